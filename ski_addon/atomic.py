@@ -1,0 +1,64 @@
+"""Writing files so that a reader never meets half of one: a temporary name beside the target, then a rename."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from .errors import OutputError
+
+
+@contextlib.contextmanager
+def atomic_path(target: str | Path) -> Iterator[Path]:
+    """Yield a temporary path beside `target` (same suffix) to write to; it replaces `target` when the block ends well.
+
+    Whatever goes wrong, the temporary file is removed and `target` keeps what it held. Raises `OutputError`.
+    """
+    target = Path(target)
+    temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
+    if target.is_dir():
+        raise OutputError(target, "it is a folder")
+    try:
+        yield temporary
+        os.replace(temporary, target)
+    except OSError as error:
+        raise OutputError(target, error.strerror or str(error)) from error
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def write_text(target: str | Path, text: str) -> None:
+    """Write a UTF-8 text file in one step."""
+    with atomic_path(target) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def check_writable_folder(folder: str | Path) -> None:
+    """Raise `OutputError` unless files can be made in `folder` (made itself if it is missing)."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except FileExistsError:
+        raise OutputError(folder, "it is a file, not a folder") from None
+    except (OSError, ValueError) as error:
+        raise OutputError(folder, getattr(error, "strerror", None) or str(error)) from None
+
+
+@contextlib.contextmanager
+def output_folder(folder: str | Path) -> Iterator[Path]:
+    """Yield `folder`, checked to be writable; folders made for it are removed again if nothing was put in them."""
+    folder = Path(folder)
+    made = [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    try:
+        check_writable_folder(folder)
+        yield folder
+    finally:
+        for parent in made:  # innermost first; rmdir refuses a folder that holds anything
+            with contextlib.suppress(OSError):
+                parent.rmdir()

@@ -1,0 +1,37 @@
+"""The run document: one TOML file that says who skis what, on which slope and snow, and how it is baked.
+
+`RunSpec` is the document as frozen dataclasses; `field_table` is the one table of its keys (unit, range, meaning).
+"""
+
+from __future__ import annotations
+
+from .estimate import Estimate, estimate
+from .fields import FieldInfo
+from .presets import PRESET_KINDS, Preset, find_preset, list_presets, preset_folder
+from .run_spec import SCHEMA_VERSION, RunSpec
+from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
+from .table import SECTIONS, field_table, find_field, section_fields
+
+__all__ = [
+    "PRESET_KINDS",
+    "SCHEMA_VERSION",
+    "SECTIONS",
+    "BakeSpec",
+    "CourseSpec",
+    "Estimate",
+    "FieldInfo",
+    "Preset",
+    "RunSpec",
+    "SimulationSpec",
+    "SkierSpec",
+    "SlopeSpec",
+    "SnowSpec",
+    "TechniqueSpec",
+    "estimate",
+    "field_table",
+    "find_field",
+    "find_preset",
+    "list_presets",
+    "preset_folder",
+    "section_fields",
+]

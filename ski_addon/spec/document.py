@@ -1,0 +1,90 @@
+"""Reading and writing the TOML document of a run: a few keys, then sections of keys."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import MissingInputError, SpecError
+
+SIZE_MAX = 1_000_000
+"""A run document larger than this [bytes] is not one."""
+
+
+@dataclass(frozen=True)
+class SourceDocument:
+    """A TOML document that was read: its path, its text and the nested tables in it."""
+
+    path: Path
+    text: str
+    content: Mapping[str, Any]
+
+    @contextlib.contextmanager
+    def errors_named(self) -> Iterator[None]:
+        """Give every `SpecError` raised inside the file, and the line of its key if the file has it."""
+        try:
+            yield
+        except SpecError as error:
+            line = find_line(self.text, error.field)
+            raise error.in_source(f"{self.path} line {line}" if line else str(self.path)) from None
+
+
+def read_document(path: Path) -> SourceDocument:
+    """Read a TOML file; raises `MissingInputError` if it cannot be read, `SpecError` if it is not TOML."""
+    try:
+        with path.open("rb") as stream:
+            raw = stream.read(SIZE_MAX + 1)
+    except FileNotFoundError:
+        raise MissingInputError(path) from None
+    except IsADirectoryError:
+        raise MissingInputError(path, "it is a folder, not a run document") from None
+    except (OSError, ValueError) as error:
+        raise MissingInputError(path, getattr(error, "strerror", None) or str(error)) from None
+    hint = "give a run document, for instance one of presets/runs"
+    if len(raw) > SIZE_MAX:
+        raise SpecError(str(path), problem="is too large to be a run document", hint=hint)
+    try:
+        text = raw.decode("utf-8-sig").replace("\r\n", "\n")
+        return SourceDocument(path, text, tomllib.loads(text))
+    except UnicodeDecodeError:
+        raise SpecError(str(path), problem="is not a text file", hint=hint) from None
+    except (ValueError, RecursionError) as error:
+        raise SpecError(str(path), problem="is not valid TOML", hint=str(error)) from None
+
+
+def write_document(content: Mapping[str, Any]) -> str:
+    """Return nested tables (keys, then one level of sections) as TOML text."""
+    lines = [f"{key} = {_toml_value(value)}" for key, value in content.items() if not isinstance(value, Mapping)]
+    for section, values in content.items():
+        if isinstance(values, Mapping):
+            lines += ["", f"[{section}]", *(f"{key} = {_toml_value(value)}" for key, value in values.items())]
+    return "\n".join(lines) + "\n"
+
+
+def find_line(text: str, key: str) -> int | None:
+    """Return the line number (from 1) on which a dotted key or "[section]" stands in a document, or None."""
+    section, _, name = key.rpartition(".")
+    here = ""
+    for count, line in enumerate(text.splitlines(), start=1):
+        header = re.match(r"\s*\[\s*([\w.-]+)\s*\]", line)
+        here = header.group(1) if header else here
+        if header and key == f"[{here}]":
+            return count
+        written = re.match(r"\s*([\w.-]+)\s*=", line)
+        if written and written.group(1) in ((name,) if here == section else (key,)):
+            return count
+    return None
+
+
+def _toml_value(value: bool | int | float | str) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return repr(value)

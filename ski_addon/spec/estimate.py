@@ -1,0 +1,76 @@
+"""What a run would take: simulated time, steps, memory and waiting time, known before anything starts."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .run_spec import RunSpec
+
+BYTES_PER_STEP = 1750
+"""Memory of one recorded step [bytes]: about 220 numbers of 8 bytes."""
+SECONDS_PER_STEP = 1.5e-3
+"""Waiting time of one step [s], measured on one slow core with checks and recording."""
+SECONDS_TO_PLAN = 3.0
+"""Waiting time of start, plan and writing [s]."""
+MEMORY_MAX = 8 * 2**30
+"""A run whose recording is larger than this [bytes] is not started without being told to."""
+SIMULATED_MAX = 3600.0
+"""A run of more skiing than this [s] is not started without being told to."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Simulated time [s], physics steps, memory of the recording [bytes] and waiting time [s] of a run."""
+
+    simulated_seconds: float
+    steps: int
+    memory_bytes: int
+    wall_seconds: float
+
+    @property
+    def too_large(self) -> bool:
+        """True if the run should not be started without asking again."""
+        return self.memory_bytes > MEMORY_MAX or self.simulated_seconds > SIMULATED_MAX
+
+    @property
+    def described(self) -> str:
+        """One clause for a message: "13.5 s of skiing, 13500 steps, 24 MB, about 23 s to wait"."""
+        return (
+            f"{show_duration(self.simulated_seconds)} of skiing, {self.steps} steps, "
+            f"{show_bytes(self.memory_bytes)} of memory, about {show_duration(self.wall_seconds)} to wait"
+        )
+
+
+def estimate(spec: RunSpec) -> Estimate:
+    """Return what simulating `spec` would take, from the durations its course asks for."""
+    course = spec.course
+    turns = course.turn_count - (0.5 if course.half_first_turn else 0.0)
+    transitions = course.turn_count - (0 if course.entry == "straight" else 1)  # two halves lead in and out
+    seconds = turns * course.turn_duration + transitions * course.transition_duration
+    steps = round(seconds / spec.simulation.time_step)
+    return Estimate(seconds, steps, steps * BYTES_PER_STEP, SECONDS_TO_PLAN + steps * SECONDS_PER_STEP)
+
+
+def estimate_turns(spec: RunSpec, turn_count: int) -> Estimate:
+    """Return what `spec` would take with another number of turns."""
+    return estimate(dataclasses.replace(spec, course=dataclasses.replace(spec.course, turn_count=turn_count)))
+
+
+def show_duration(seconds: float) -> str:
+    """Return a duration as a person says it: "13.5 s", "12 min", "3.2 h", "5.1 days"."""
+    for limit, divisor, unit in ((120, 1, "s"), (7200, 60, "min"), (172800, 3600, "h")):
+        if seconds < limit:
+            return f"{seconds / divisor:.3g} {unit}"
+    return f"{seconds / 86400:.3g} days"
+
+
+def show_bytes(count: float) -> str:
+    """Return a size as a person says it: "24 MB", "3.1 GB"."""
+    for unit in ("kB", "MB", "GB"):
+        count /= 1000
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+    return f"{count / 1000:.3g} TB"

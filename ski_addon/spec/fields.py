@@ -1,0 +1,85 @@
+"""What one key of a run document is: kind, unit, range, choices and meaning, kept as dataclass field metadata.
+
+Validation, the key reference in `docs/run_spec.md` and Blender's properties are all made from this one table.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+NUMBER, WHOLE, FLAG, CHOICE, TEXT = "number", "whole", "flag", "choice", "text"
+
+
+@dataclass(frozen=True)
+class FieldInfo:
+    """One key of a run document.
+
+    `kind` is "number", "whole", "flag", "choice" or "text"; `low` and `high` bound numbers (for text, `high` is the
+    most characters); `choices` are the words a choice may have; `word` is the one word ("auto", "unlimited") a number
+    may be replaced with, or "". `unit` is SI, except degrees in keys ending in `_deg`.
+    """
+
+    key: str
+    kind: str
+    default: Any
+    doc: str
+    label: str = ""
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    choices: tuple[str, ...] = ()
+    word: str = ""
+    advanced: bool = False
+    required: bool = False
+
+    @property
+    def section(self) -> str:
+        """Section of the key ("course"), or "" for a key of the document itself."""
+        return self.key.rpartition(".")[0]
+
+    @property
+    def name(self) -> str:
+        """Key within its section ("turn_radius")."""
+        return self.key.rpartition(".")[2]
+
+    @property
+    def allowed(self) -> str:
+        """The allowed values as a person reads them ("3..200 m", "right, left")."""
+        if self.kind == FLAG:
+            return "true, false"
+        if self.kind == CHOICE:
+            return ", ".join(self.choices)
+        if self.kind == TEXT:
+            return f"at most {self.high:g} characters"
+        span = f"{self.low:g}..{self.high:g}{' ' + self.unit if self.unit else ''}"
+        return f"{span} or {self.word}" if self.word else span
+
+
+def _leaf(default: Any, **metadata: Any) -> Any:
+    return field(default=default, metadata=metadata)
+
+
+def number(default: float | str, low: float, high: float, unit: str, label: str, doc: str, **more: Any) -> Any:
+    """Declare a float in `low`..`high` [`unit`]; `word="auto"` also allows that word."""
+    return _leaf(default, kind=NUMBER, low=low, high=high, unit=unit, label=label, doc=doc, **more)
+
+
+def whole(default: int, low: int, high: int, unit: str, label: str, doc: str, **more: Any) -> Any:
+    """Declare a whole number in `low`..`high`."""
+    return _leaf(default, kind=WHOLE, low=low, high=high, unit=unit, label=label, doc=doc, **more)
+
+
+def flag(default: bool, label: str, doc: str, **more: Any) -> Any:
+    """Declare a true or false switch."""
+    return _leaf(default, kind=FLAG, label=label, doc=doc, **more)
+
+
+def choice(default: str, choices: tuple[str, ...], label: str, doc: str, **more: Any) -> Any:
+    """Declare one word out of `choices`."""
+    return _leaf(default, kind=CHOICE, choices=choices, label=label, doc=doc, **more)
+
+
+def text(default: str, most: int, label: str, doc: str, **more: Any) -> Any:
+    """Declare free text of at most `most` characters."""
+    return _leaf(default, kind=TEXT, high=most, label=label, doc=doc, **more)

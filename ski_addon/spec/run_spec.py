@@ -1,0 +1,109 @@
+"""`RunSpec`: the whole request for one run, as data."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from . import document, table, values
+from .fields import text
+from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
+
+SCHEMA_VERSION = 1
+"""Version of the run document; part of the content hash."""
+
+
+@dataclass(frozen=True)
+class RunSpec:
+    """One run: skier, slope, course, technique, snow, simulation and bake.
+
+    The same document serves the sidebar, a preset, the command line and the farm. `from_toml`, `from_dict` and
+    `with_overrides` return checked specs; call `validate` on one built from the section classes by hand.
+    """
+
+    name: str = text("Untitled run", 120, "Name", "Name of the run, shown in reports")
+    description: str = text("", 2000, "Description", "What the run is for")
+    skier: SkierSpec = field(default_factory=SkierSpec)
+    slope: SlopeSpec = field(default_factory=SlopeSpec)
+    course: CourseSpec = field(default_factory=CourseSpec)
+    technique: TechniqueSpec = field(default_factory=TechniqueSpec)
+    snow: SnowSpec = field(default_factory=SnowSpec)
+    simulation: SimulationSpec = field(default_factory=SimulationSpec)
+    bake: BakeSpec = field(default_factory=BakeSpec)
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> RunSpec:
+        """Read a run document; its required keys must be there, the others have defaults.
+
+        Raises `MissingInputError` if the file cannot be read and `SpecError` (naming file and line) if it is wrong.
+        """
+        source = document.read_document(Path(path))
+        with source.errors_named():
+            table.check_required(source.content)
+            return cls.from_dict(source.content)
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> RunSpec:
+        """Build a spec from nested tables `{"course": {"turn_count": 6}}`; what is not given keeps its default."""
+        return cls()._merged(content)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the spec as nested plain tables in canonical order, numbers as float or int by their field."""
+        flat = {key: values.canonical(info, table.get_value(self, key)) for key, info in table.field_table().items()}
+        return table.nested(flat)
+
+    def to_toml(self) -> str:
+        """Return the canonical TOML document: every key, in the order of the reference."""
+        return document.write_document(self.to_dict())
+
+    def with_overrides(self, overrides: Mapping[str, Any]) -> RunSpec:
+        """Return a copy with dotted keys replaced, as `--set course.turn_radius=10` does.
+
+        Strings are read as TOML values; words need no quotes. Other values are taken as they are.
+        """
+        flat = {key: values.parse_text(table.find_field(key), value) for key, value in overrides.items()}
+        return self._merged(table.nested(flat))
+
+    def with_part(self, path: str | Path) -> RunSpec:
+        """Return a copy with the sections of a part document (a skier, a snow, a style) laid over this one.
+
+        The part's own `name` and `description` are not taken over.
+        """
+        source = document.read_document(Path(path))
+        part = {key: value for key, value in source.content.items() if key not in ("name", "description")}
+        with source.errors_named():
+            return self._merged(part)
+
+    def validate(self) -> RunSpec:
+        """Raise `SpecError` if any value has a wrong type or lies outside its range; return the spec itself."""
+        for key, info in table.field_table().items():
+            values.check(info, table.get_value(self, key), self)
+        return self
+
+    def content_hash(self) -> str:
+        """Return the SHA-256 hex digest of the canonical document and its schema version."""
+        canonical = json.dumps([SCHEMA_VERSION, self.to_dict()], sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(canonical.encode()).hexdigest()
+
+    def _merged(self, content: Mapping[str, Any]) -> RunSpec:
+        """Return a checked copy with the given tables laid over this spec."""
+        flat = table.flattened(content)
+        changed = self
+        for key, value in flat.items():
+            changed = _replaced(changed, key, value)
+        changed.validate()
+        for key in flat:
+            changed = _replaced(changed, key, values.canonical(table.find_field(key), table.get_value(changed, key)))
+        return changed
+
+
+def _replaced(spec: RunSpec, key: str, value: object) -> RunSpec:
+    section, _, name = key.rpartition(".")
+    if not section:
+        return dataclasses.replace(spec, **{name: value})
+    return dataclasses.replace(spec, **{section: dataclasses.replace(getattr(spec, section), **{name: value})})
