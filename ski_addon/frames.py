@@ -1,0 +1,113 @@
+"""Rotations and quaternions, batched over leading axes.
+
+Quaternions are (w, x, y, z) as in MuJoCo and Blender. Rotation matrices map coordinates of the named inner frame
+to the outer one (`world_from_ski @ vector_in_ski`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+Array = np.ndarray
+
+
+def rotation_about(axis: str, angle: Array) -> Array:
+    """Return right-handed rotation matrices (..., 3, 3) about the coordinate axis "x", "y" or "z" by `angle` (...) [rad]."""
+    angle = np.asarray(angle, dtype=float)
+    c, s = np.cos(angle), np.sin(angle)
+    first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+    out = np.zeros((*angle.shape, 3, 3))
+    out[..., range(3), range(3)] = 1.0
+    out[..., first, first] = c
+    out[..., second, second] = c
+    out[..., first, second] = -s
+    out[..., second, first] = s
+    return out
+
+
+def matrix_from_columns(x: Array, y: Array, z: Array) -> Array:
+    """Stack three axes (..., 3) as the columns of a rotation matrix (..., 3, 3)."""
+    return np.stack((x, y, z), axis=-1)
+
+
+def normalized(vector: Array) -> Array:
+    """Return `vector` (..., 3) divided by its length."""
+    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+
+
+def quaternion_multiply(a: Array, b: Array) -> Array:
+    """Return the Hamilton product a b of quaternions (..., 4)."""
+    aw, ax, ay, az = np.moveaxis(np.asarray(a), -1, 0)
+    bw, bx, by, bz = np.moveaxis(np.asarray(b), -1, 0)
+    return np.stack(
+        (
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ),
+        axis=-1,
+    )
+
+
+def quaternion_conjugate(q: Array) -> Array:
+    """Return the inverse of unit quaternions (..., 4)."""
+    return np.asarray(q) * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def matrix_from_quaternion(q: Array) -> Array:
+    """Return rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
+    w, x, y, z = np.moveaxis(np.asarray(q, dtype=float), -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def quaternion_from_matrix(matrix: Array) -> Array:
+    """Return unit quaternions (..., 4) of rotation matrices (..., 3, 3), from the largest of the four squares."""
+    m = np.asarray(matrix, dtype=float)
+    diagonal = np.moveaxis(np.diagonal(m, axis1=-2, axis2=-1), -1, 0)
+    trace = diagonal.sum(axis=0)
+    squares = np.stack((trace, *diagonal), axis=-1)
+    largest = np.argmax(squares, axis=-1)
+    xy, xz, yz = m[..., 0, 1], m[..., 0, 2], m[..., 1, 2]
+    yx, zx, zy = m[..., 1, 0], m[..., 2, 0], m[..., 2, 1]
+    xx, yy, zz = diagonal
+    candidates = np.stack(
+        (
+            np.stack((1 + trace, zy - yz, xz - zx, yx - xy), axis=-1),
+            np.stack((zy - yz, 1 + xx - yy - zz, xy + yx, xz + zx), axis=-1),
+            np.stack((xz - zx, xy + yx, 1 + yy - xx - zz, yz + zy), axis=-1),
+            np.stack((yx - xy, xz + zx, yz + zy, 1 + zz - xx - yy), axis=-1),
+        ),
+        axis=-2,
+    )
+    chosen = np.take_along_axis(candidates, largest[..., None, None], axis=-2)[..., 0, :]
+    return chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
+
+
+def continuous_quaternions(q: Array) -> Array:
+    """Flip signs along the first axis of `q` (n, ..., 4) so that neighbours lie in one hemisphere."""
+    q = np.array(q, dtype=float)
+    sign = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
+    sign[sign == 0] = 1.0
+    q[1:] *= np.cumprod(sign, axis=0)[..., None]
+    return q
+
+
+def rotate(q: Array, vector: Array) -> Array:
+    """Rotate vectors (..., 3) by unit quaternions (..., 4)."""
+    return np.einsum("...ij,...j->...i", matrix_from_quaternion(q), np.asarray(vector, dtype=float))
+
+
+def mirror_vector(vector: Array) -> Array:
+    """Mirror vectors (..., 3) in the xz plane: left becomes right."""
+    return np.asarray(vector) * np.array([1.0, -1.0, 1.0])
+
+
+def mirror_quaternion(q: Array) -> Array:
+    """Mirror rotations (..., 4) in the xz plane: rotations about x and z change sign."""
+    return np.asarray(q) * np.array([1.0, -1.0, 1.0, -1.0])
