@@ -62,3 +62,12 @@ def output_folder(folder: str | Path) -> Iterator[Path]:
         for parent in made:  # innermost first; rmdir refuses a folder that holds anything
             with contextlib.suppress(OSError):
                 parent.rmdir()
+
+
+def move_all(stage: Path, folder: Path) -> None:
+    """Move every file of `stage` (on the same disk) into `folder`, replacing files of the same names."""
+    try:
+        for path in sorted(stage.iterdir()):
+            os.replace(path, folder / path.name)
+    except OSError as error:
+        raise OutputError(error.filename2 or folder, error.strerror or str(error)) from error

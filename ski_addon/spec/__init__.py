@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from .estimate import Estimate, estimate
 from .fields import FieldInfo
-from .presets import PRESET_KINDS, Preset, find_preset, list_presets, preset_folder
+from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, list_presets, preset_folder
 from .run_spec import SCHEMA_VERSION, RunSpec
 from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 from .table import SECTIONS, field_table, find_field, section_fields
 
 __all__ = [
+    "PART_KINDS",
     "PRESET_KINDS",
     "SCHEMA_VERSION",
     "SECTIONS",
@@ -30,7 +31,7 @@ __all__ = [
     "estimate",
     "field_table",
     "find_field",
-    "find_preset",
+    "find_document",
     "list_presets",
     "preset_folder",
     "section_fields",

@@ -15,28 +15,29 @@ from ..errors import MissingInputError, SpecError
 
 SIZE_MAX = 1_000_000
 """A run document larger than this [bytes] is not one."""
+WANTED = "give a run document, for instance one of presets/runs"
 
 
 @dataclass(frozen=True)
 class SourceDocument:
-    """A TOML document that was read: its path, its text and the nested tables in it."""
+    """A TOML document: the name of its source, its text and the nested tables in it."""
 
-    path: Path
+    source: str
     text: str
     content: Mapping[str, Any]
 
     @contextlib.contextmanager
     def errors_named(self) -> Iterator[None]:
-        """Give every `SpecError` raised inside the file, and the line of its key if the file has it."""
+        """Give every `SpecError` raised inside the source, and the line of its key if the text has it."""
         try:
             yield
         except SpecError as error:
             line = find_line(self.text, error.field)
-            raise error.in_source(f"{self.path} line {line}" if line else str(self.path)) from None
+            raise error.in_source(f"{self.source} line {line}" if line else self.source) from None
 
 
-def read_document(path: Path) -> SourceDocument:
-    """Read a TOML file; raises `MissingInputError` if it cannot be read, `SpecError` if it is not TOML."""
+def read_text(path: Path) -> str:
+    """Return the text of a document; raises `MissingInputError` if it cannot be read, `SpecError` if it is no text."""
     try:
         with path.open("rb") as stream:
             raw = stream.read(SIZE_MAX + 1)
@@ -46,16 +47,20 @@ def read_document(path: Path) -> SourceDocument:
         raise MissingInputError(path, "it is a folder, not a run document") from None
     except (OSError, ValueError) as error:
         raise MissingInputError(path, getattr(error, "strerror", None) or str(error)) from None
-    hint = "give a run document, for instance one of presets/runs"
     if len(raw) > SIZE_MAX:
-        raise SpecError(str(path), problem="is too large to be a run document", hint=hint)
+        raise SpecError(str(path), problem="is too large to be a run document", hint=WANTED)
     try:
-        text = raw.decode("utf-8-sig").replace("\r\n", "\n")
-        return SourceDocument(path, text, tomllib.loads(text))
+        return raw.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError:
-        raise SpecError(str(path), problem="is not a text file", hint=hint) from None
+        raise SpecError(str(path), problem="is not a text file", hint=WANTED) from None
+
+
+def parse_document(text: str, source: str) -> SourceDocument:
+    """Parse TOML text; raises `SpecError` naming the source and the line if it is not TOML."""
+    try:
+        return SourceDocument(source, text, tomllib.loads(text))
     except (ValueError, RecursionError) as error:
-        raise SpecError(str(path), problem="is not valid TOML", hint=str(error)) from None
+        raise SpecError(source, problem="is not valid TOML", hint=str(error)) from None
 
 
 def write_document(content: Mapping[str, Any]) -> str:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import MissingInputError
-from .document import read_document
+from .document import parse_document, read_text
 
-PRESET_KINDS = ("runs", "skiers", "snow", "styles")
-"""Folders of presets: whole runs, and parts to lay over a run with `RunSpec.with_part`."""
+PART_KINDS = ("skiers", "snow", "styles")
+"""Folders of parts, documents of one section to lay over a run with `RunSpec.with_part`."""
+PRESET_KINDS = ("runs", *PART_KINDS)
+"""Folders of presets: whole runs, and parts."""
 
 
 @dataclass(frozen=True)
@@ -35,17 +37,35 @@ def list_presets(kind: str, folder: Path | None = None) -> tuple[Preset, ...]:
     return tuple(_read_preset(kind, path) for path in paths)
 
 
-def find_preset(kind: str, identifier: str) -> Path:
-    """Return the path of a shipped preset by the name of its file; an unknown one names the nearest."""
-    path = preset_folder(kind) / f"{identifier}.toml"
-    if path.is_file():
+def find_document(name: str, kinds: tuple[str, ...] = ("runs",)) -> Path:
+    """Return the path of a document given as a path, or as the name of a preset of one of `kinds`.
+
+    A part whose name is in several folders is named with its folder ("snow/paper"). An unknown name raises
+    `MissingInputError` with the nearest one.
+    """
+    path = Path(name)
+    if path.suffix or path.is_file():
+        return path  # reading it says what is wrong with it
+    known = {preset.stem: preset for preset in _preset_paths(kinds)}
+    known |= {f"{preset.parent.name}/{preset.stem}": preset for preset in _preset_paths(kinds)}
+    clashes = [key for key, preset in known.items() if "/" in key and preset.stem == name]
+    if name in known and len(clashes) == 1:
+        return known[name]
+    if "/" in name and name in known:
+        return known[name]
+    if clashes:
+        raise MissingInputError(name, f"there are several presets of that name: say {' or '.join(clashes)}")
+    if path.exists():
         return path
-    known = sorted(entry.stem for entry in preset_folder(kind).glob("*.toml"))
-    near = difflib.get_close_matches(identifier, known, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"presets are {', '.join(known)}"
-    raise MissingInputError(identifier, f"there is no such file or preset: {hint}")
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"presets are {', '.join(sorted(k for k in known if '/' not in k))}"
+    raise MissingInputError(name, f"there is no such file or preset: {hint}")
+
+
+def _preset_paths(kinds: tuple[str, ...]) -> list[Path]:
+    return [path for kind in kinds for path in sorted(preset_folder(kind).glob("*.toml"))]
 
 
 def _read_preset(kind: str, path: Path) -> Preset:
-    content = read_document(path).content
+    content = parse_document(read_text(path), str(path)).content
     return Preset(kind, path.stem, path, str(content.get("name", path.stem)), str(content.get("description", "")))

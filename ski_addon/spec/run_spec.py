@@ -42,10 +42,15 @@ class RunSpec:
 
         Raises `MissingInputError` if the file cannot be read and `SpecError` (naming file and line) if it is wrong.
         """
-        source = document.read_document(Path(path))
-        with source.errors_named():
-            table.check_required(source.content)
-            return cls.from_dict(source.content)
+        return cls.from_text(document.read_text(Path(path)), str(path))
+
+    @classmethod
+    def from_text(cls, written: str, source: str = "the run document") -> RunSpec:
+        """Read a whole run document from TOML text (the header of a recording has one); `source` names it in errors."""
+        parsed = document.parse_document(written, source)
+        with parsed.errors_named():
+            table.check_required(parsed.content)
+            return cls.from_dict(parsed.content)
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> RunSpec:
@@ -74,7 +79,7 @@ class RunSpec:
 
         The part's own `name` and `description` are not taken over.
         """
-        source = document.read_document(Path(path))
+        source = document.parse_document(document.read_text(Path(path)), str(path))
         part = {key: value for key, value in source.content.items() if key not in ("name", "description")}
         with source.errors_named():
             return self._merged(part)

@@ -66,7 +66,8 @@ def _check_text(info: FieldInfo, value: object) -> None:
     if not isinstance(value, str):
         raise SpecError(info.key, value, problem="is not text", hint='write it in quotes, for instance "Giant slalom"')
     if len(value) > (info.high or 0):
-        raise SpecError(info.key, value, info.allowed, "shorten it", problem=f"has {len(value)} characters, allowed are")
+        problem = f"has {len(value)} characters, allowed are"
+        raise SpecError(info.key, value, info.allowed, "shorten it", problem=problem)
     if not value.isprintable() and not set(filter(lambda c: not c.isprintable(), value)) <= {"\n", "\t"}:
         raise SpecError(info.key, value, problem="has characters that cannot be printed", hint="remove them")
 

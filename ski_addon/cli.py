@@ -1,0 +1,226 @@
+"""The command line: one parser for `python -m ski_addon` and `blender --command ski`."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from types import FrameType
+from typing import NoReturn
+
+from . import __version__, commands
+from .errors import Cancelled, SkiAddonError, one_line
+
+TRACEBACK_VARIABLE = "SKI_ADDON_TRACEBACK"
+"""Environment variable that adds the traceback to an unexpected failure."""
+
+OVERVIEW = """\
+Make ski animation from physics: describe a run in a TOML file, let a skier ski it, and get keyframes.
+
+  python -m ski_addon run giant_slalom -o out              simulate a shipped preset
+  python -m ski_addon run my_run.toml -o out               simulate a run of your own
+  python -m ski_addon run giant_slalom --set course.turn_radius=18 --part soft -o out
+  python -m ski_addon bake out -o skier.blend              make keyframes of it (needs Blender's bpy)
+
+All keys of a run document are explained in docs/run_spec.md."""
+
+EXIT_CODES = """\
+exit codes: 0 done, 2 bad arguments or run document, 3 missing input or unwritable output, 4 Blender is missing,
+5 the skier fell or the simulation diverged, 7 a picture could not be rendered, 130 interrupted"""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """An argument parser whose failures are one line on stderr and exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong with the arguments, and leave."""
+        self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
+
+
+def build_parser(prog: str = "python -m ski_addon") -> argparse.ArgumentParser:
+    """Return the parser of all commands; the chosen command's function is in `arguments.command`."""
+    parser = OneLineParser(
+        prog=prog, description=OVERVIEW, epilog=EXIT_CODES, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--version", action="version", version=f"Ski Addon {__version__}")
+    subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for add in (_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_validate, _add_demo):
+        add(subparsers)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None, prog: str = "python -m ski_addon") -> int:
+    """Run one command and return its exit code; every failure is exactly one line on stderr."""
+    with _signals_as_interrupt():
+        try:
+            arguments = build_parser(prog).parse_args(argv)
+            return arguments.command(arguments)
+        except SystemExit as stop:  # argparse: help, version, bad arguments
+            return stop.code if isinstance(stop.code, int) else 2
+        except SkiAddonError as error:
+            return _fail(str(error), error.exit_code)
+        except KeyboardInterrupt:
+            return _fail(str(Cancelled()), Cancelled.exit_code)
+        except BrokenPipeError:  # the reader of our output has gone: nothing left to say to it
+            sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - lives until exit
+            return 0
+        except OSError as error:
+            return _fail(f"{error.filename or 'input or output'}: {error.strerror or error}", 3)
+        except MemoryError:
+            return _fail("not enough memory: shorten the course", 3)
+        except Exception as error:
+            if os.environ.get(TRACEBACK_VARIABLE):
+                traceback.print_exc()
+            return _fail(f"unexpected {type(error).__name__}: {error} (set {TRACEBACK_VARIABLE}=1 for details)", 1)
+
+
+def _fail(message: str, exit_code: int) -> int:
+    print(f"ski_addon: {one_line(message)}", file=sys.stderr)
+    return exit_code
+
+
+@contextlib.contextmanager
+def _signals_as_interrupt() -> Iterator[None]:
+    """Make a polite kill clean up as Ctrl+C does (only the main thread may set signals)."""
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    try:
+        previous = {number: signal.signal(number, interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    except ValueError:
+        previous = {}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+_Subparsers = "argparse._SubParsersAction[argparse.ArgumentParser]"
+
+
+def _command(subparsers: _Subparsers, name: str, summary: str, details: str = "") -> argparse.ArgumentParser:
+    parser = subparsers.add_parser(
+        name,
+        help=summary,
+        description=f"{summary[0].upper()}{summary[1:]}.{details and chr(10) + details}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(command=getattr(commands, f"{name}_command"), json=False, quiet=False, force=False)
+    return parser
+
+
+def _add_spec(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("spec", metavar="SPEC", help="run document (.toml), or the name of a preset in presets/runs")
+    _add_changes(parser)
+
+
+def _add_changes(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--set",
+        dest="changes",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help="change one key of the run, for instance course.turn_radius=18 or technique.angulation=auto; repeatable",
+    )
+    parser.add_argument(
+        "--part",
+        dest="parts",
+        metavar="PART",
+        action="append",
+        default=[],
+        help="lay a skier, snow or style over the run: a file, or a name in presets/skiers, snow, styles; repeatable",
+    )
+
+
+def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str, *, required: bool = False) -> None:
+    parser.add_argument("-o", "--output", metavar=metavar, required=required, help=text)
+
+
+def _add_talk(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print the summary as JSON on stdout, and nothing else")
+    parser.add_argument("--quiet", action="store_true", help="print no progress and no summary")
+
+
+def _add_force(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--force", action="store_true", help="start even if the run would take more than 8 GB or an hour of skiing"
+    )
+
+
+def _add_run(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "run",
+        "plan, simulate and report a run",
+        "Writes spec.toml, recording.npz, summary.json and (with matplotlib) report.png into the folder.",
+    )
+    _add_spec(parser)
+    _add_output(parser, "DIR", "folder for the results", required=True)
+    _add_talk(parser)
+    _add_force(parser)
+
+
+def _add_plan(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers, "plan", "plan a run without simulating it", "Says whether the track can be skied, and how fast."
+    )
+    _add_spec(parser)
+    _add_output(parser, "DIR|FILE.json", "also write the planned numbers as JSON (plan.json in a folder)")
+    _add_talk(parser)
+
+
+def _add_simulate(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers, "simulate", "simulate a run", "Writes spec.toml, recording.npz and summary.json into the folder."
+    )
+    _add_spec(parser)
+    _add_output(parser, "DIR", "folder for the results", required=True)
+    _add_talk(parser)
+    _add_force(parser)
+
+
+def _add_bake(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "bake",
+        "make a .blend file with the skier as keyframes",
+        "Needs Blender's Python module bpy. The file opens in plain Blender.",
+    )
+    parser.add_argument(
+        "source", metavar="RECORDING|DIR|SPEC", help="recording.npz, the folder it is in, or a run to simulate first"
+    )
+    _add_changes(parser)
+    _add_output(parser, "FILE.blend", "file to write (skier.blend beside the recording if not given)")
+    _add_talk(parser)
+    _add_force(parser)
+
+
+def _add_report(subparsers: _Subparsers) -> None:
+    parser = _command(subparsers, "report", "draw the plots of a recording", "Needs matplotlib.")
+    parser.add_argument("source", metavar="RECORDING|DIR", help="recording.npz, or the folder it is in")
+    _add_output(parser, "FILE.png", "picture to write (report.png beside the recording if not given)")
+
+
+def _add_validate(subparsers: _Subparsers) -> None:
+    parser = _command(subparsers, "validate", "check run documents without running them")
+    parser.add_argument("specs", metavar="SPEC", nargs="+", help="run documents (.toml) or names of presets")
+    _add_changes(parser)
+    parser.add_argument("--json", action="store_true", help="print the findings as JSON on stdout")
+
+
+def _add_demo(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "demo",
+        "simulate, bake and picture the giant-slalom preset",
+        "Writes what run writes, and skier.blend and strobe.png. Needs Blender's Python module bpy.",
+    )
+    _add_output(parser, "DIR", "folder for the results", required=True)
+    _add_talk(parser)

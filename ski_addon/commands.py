@@ -1,0 +1,189 @@
+"""What each command of the command line does: read, call the library, write whole files, say how it went."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import atomic, results
+from .errors import MissingInputError, SkiAddonError, SpecError
+from .spec import PART_KINDS, RunSpec, estimate, find_document
+from .talk import Talk, json_text, summary_lines
+
+if TYPE_CHECKING:
+    from .simulation.recording import Recording
+
+DEMO_PRESET = "giant_slalom"
+
+
+def run_command(arguments: argparse.Namespace) -> int:
+    """`run`: plan, simulate, report. Returns the exit code."""
+    return _simulate_into(_read_spec(arguments.spec, arguments), arguments, report=True)
+
+
+def simulate_command(arguments: argparse.Namespace) -> int:
+    """`simulate`: as `run`, without the picture."""
+    return _simulate_into(_read_spec(arguments.spec, arguments), arguments, report=False)
+
+
+def plan_command(arguments: argparse.Namespace) -> int:
+    """`plan`: say whether and how the track can be skied."""
+    spec, talk = _read_spec(arguments.spec, arguments), _talk(arguments)
+    target = _target(arguments.output, "plan.json") if arguments.output else None
+    if target is None:
+        summary = results.plan_summary(spec)
+    else:
+        with atomic.output_folder(target.parent):
+            summary = results.plan_summary(spec)
+            atomic.write_text(target, json_text(summary))
+    talk.say(f"{spec.name}: can be skied")
+    for line in results.plan_lines(summary):
+        talk.say(line)
+    talk.give(summary)
+    return 0
+
+
+def bake_command(arguments: argparse.Namespace) -> int:
+    """`bake`: recording (or a run, simulated first) -> .blend."""
+    talk = _talk(arguments)
+    recording_path = _recording_path(arguments.source)
+    default_folder = recording_path.parent if recording_path else Path(".")
+    target = _target(arguments.output or default_folder, "skier.blend")
+    results.check_blender("baking")
+    with atomic.output_folder(target.parent):
+        if recording_path:
+            recording = results.load_recording(recording_path)
+            spec = _recorded_spec(recording, arguments)
+        else:
+            spec = _read_spec(arguments.source, arguments)
+            _check_size(spec, arguments, talk)
+            recording = _simulated(spec, talk)[0]
+            results.raise_unless_finished(recording)
+        results.bake(recording, spec, target)
+    talk.say(f"wrote {target}")
+    talk.give({"blend": str(target), "spec_hash": spec.content_hash()})
+    return 0
+
+
+def report_command(arguments: argparse.Namespace) -> int:
+    """`report`: recording -> picture of its plots."""
+    path = _recording_path(arguments.source)
+    if path is None:
+        raise MissingInputError(arguments.source, "it is not a recording (recording.npz, or the folder it is in)")
+    results.check_matplotlib()
+    target = _target(arguments.output or path.parent, "report.png")
+    with atomic.output_folder(target.parent):
+        results.draw_report(results.load_recording(path), target)
+    _talk(arguments).say(f"wrote {target}")
+    return 0
+
+
+def validate_command(arguments: argparse.Namespace) -> int:
+    """`validate`: check run documents; one line for each. Returns the exit code of the first bad one."""
+    talk, found, exit_code = _talk(arguments), [], 0
+    for name in arguments.specs:
+        try:
+            spec = _read_spec(name, arguments)
+        except SkiAddonError as error:
+            results.complain(str(error))
+            exit_code = exit_code or error.exit_code
+            found.append({"spec": name, "valid": False, "error": str(error)})
+        else:
+            talk.say(f"{name}: {spec.name}, {estimate(spec).described}")
+            found.append({"spec": name, "valid": True, "spec_hash": spec.content_hash()})
+    talk.give(found)
+    return exit_code
+
+
+def demo_command(arguments: argparse.Namespace) -> int:
+    """`demo`: the giant-slalom preset, simulated, baked and pictured."""
+    results.check_blender("the demo")
+    spec, talk = RunSpec.from_toml(find_document(DEMO_PRESET)), _talk(arguments)
+    with atomic.output_folder(arguments.output) as folder:
+        recording, summary = _simulated(spec, talk)
+        results.write_run(folder, spec, recording, summary, report=True, talk=talk)
+        results.raise_unless_finished(recording)
+        talk.say("baking skier.blend")
+        results.bake(recording, spec, folder / "skier.blend")
+        talk.say("rendering strobe.png")
+        results.render_strobe(recording, spec, folder / "strobe.png")
+    _tell(talk, spec, summary, folder)
+    return 0
+
+
+def _simulate_into(spec: RunSpec, arguments: argparse.Namespace, *, report: bool) -> int:
+    talk = _talk(arguments)
+    _check_size(spec, arguments, talk)
+    with atomic.output_folder(arguments.output) as folder:
+        recording, summary = _simulated(spec, talk)
+        results.write_run(folder, spec, recording, summary, report=report, talk=talk)
+    _tell(talk, spec, summary, folder)
+    results.raise_unless_finished(recording)
+    return 0
+
+
+def _simulated(spec: RunSpec, talk: Talk) -> tuple[Recording, dict[str, Any]]:
+    with talk.progress() as progress:
+        return results.simulate_run(spec, progress)
+
+
+def _tell(talk: Talk, spec: RunSpec, summary: dict[str, Any], folder: Path) -> None:
+    talk.say(f"{spec.name}: {summary.get('status')}, results in {folder}")
+    for line in summary_lines(summary):
+        talk.say(line)
+    talk.give(summary)
+
+
+def _talk(arguments: argparse.Namespace) -> Talk:
+    return Talk(json=arguments.json, quiet=arguments.quiet)
+
+
+def _read_spec(name: str, arguments: argparse.Namespace) -> RunSpec:
+    """Read a run document or preset, lay the parts over it, then the single keys."""
+    spec = RunSpec.from_toml(find_document(name))
+    for part in arguments.parts:
+        spec = spec.with_part(find_document(part, PART_KINDS))
+    return spec.with_overrides(_changes(arguments))
+
+
+def _recorded_spec(recording: Recording, arguments: argparse.Namespace) -> RunSpec:
+    """Return the spec in a recording with other bake settings; what was simulated cannot be changed any more."""
+    for key in _changes(arguments):
+        if not key.startswith("bake."):
+            raise SpecError(key, problem="cannot be changed in a recording", hint="simulate again, or set bake. keys")
+    if arguments.parts:
+        raise SpecError("--part", problem="cannot be laid over a recording", hint="simulate again with it")
+    return results.recorded_spec(recording).with_overrides(_changes(arguments))
+
+
+def _changes(arguments: argparse.Namespace) -> dict[str, str]:
+    changes = {}
+    for written in arguments.changes:
+        key, equals, value = written.partition("=")
+        if not equals:
+            raise SpecError(f"--set {written}", problem="has no value", hint="write --set key=value")
+        changes[key.strip()] = value
+    return changes
+
+
+def _check_size(spec: RunSpec, arguments: argparse.Namespace, talk: Talk) -> None:
+    expected = estimate(spec)
+    if expected.too_large and not arguments.force:
+        hint = "shorten the course, or add --force to start it all the same"
+        raise SpecError("course", problem=f"would take {expected.described}, more than 8 GB or an hour", hint=hint)
+    talk.say(f"{spec.name}: {expected.described}")
+
+
+def _recording_path(source: str) -> Path | None:
+    """Return the recording a command was given (a folder stands for the one in it), or None if it is a run."""
+    path = Path(source)
+    if path.is_dir():
+        return path / "recording.npz"
+    return path if path.suffix == ".npz" else None
+
+
+def _target(output: str | Path, name: str) -> Path:
+    """Return the file to write: `output` itself if it has the suffix of `name`, else `name` in the folder `output`."""
+    path = Path(output)
+    return path if path.suffix == Path(name).suffix and not path.is_dir() else path / name

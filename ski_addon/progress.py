@@ -1,0 +1,80 @@
+"""Progress of long work: a bar with time left on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import TextIO
+
+from .spec.estimate import show_duration
+
+BAR_WIDTH = 28
+REDRAW_SECONDS = 0.1
+PLAIN_STEP = 0.1
+
+
+class ProgressDisplay:
+    """A progress callback `display(fraction, text)` that draws on a stream; use it as a context manager.
+
+    On a terminal one line is redrawn, at most ten times a second, and removed at the end. Elsewhere a plain line is
+    written for every tenth of the work. With `stream=None` nothing is shown. `clock` returns seconds.
+    """
+
+    def __init__(self, stream: TextIO | None, clock: Callable[[], float] = time.monotonic) -> None:
+        self._stream = stream
+        self._clock = clock
+        self._terminal = stream is not None and stream.isatty()
+        self._text = ""
+        self._started = clock()
+        self._drawn_at = float("-inf")
+        self._plain_next = PLAIN_STEP
+        self._width = 0
+
+    def __call__(self, fraction: float, text: str) -> bool:
+        """Show that `fraction` (0..1) of the work named `text` is done; returns True (never cancels)."""
+        fraction = min(max(fraction, 0.0), 1.0)
+        if text != self._text:
+            self._text, self._started, self._plain_next = text, self._clock(), PLAIN_STEP
+            self._drawn_at = float("-inf")
+        if self._stream is None:
+            return True
+        if self._terminal:
+            self._draw_bar(fraction)
+        elif fraction >= self._plain_next - 1e-9:
+            self._plain_next = (fraction // PLAIN_STEP + 1) * PLAIN_STEP
+            self._write(f"{self._text}: {fraction:4.0%}{self._time_left(fraction)}\n")
+        return True
+
+    def __enter__(self) -> ProgressDisplay:
+        """Start showing."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Remove the bar, so that the next line starts at the left."""
+        if self._width:
+            self._write("\r" + " " * self._width + "\r")
+            self._width = 0
+
+    def _draw_bar(self, fraction: float) -> None:
+        now = self._clock()
+        if now - self._drawn_at < REDRAW_SECONDS and fraction < 1.0:
+            return
+        self._drawn_at = now
+        full = round(fraction * BAR_WIDTH)
+        line = f"{self._text} [{'#' * full}{'.' * (BAR_WIDTH - full)}] {fraction:4.0%}{self._time_left(fraction)}"
+        self._write("\r" + line.ljust(self._width))
+        self._width = max(self._width, len(line))
+
+    def _time_left(self, fraction: float) -> str:
+        elapsed = self._clock() - self._started
+        if not 0.01 < fraction < 1.0 or elapsed < 0.5:
+            return ""
+        return f", {show_duration(elapsed * (1.0 - fraction) / fraction)} left"
+
+    def _write(self, text: str) -> None:
+        if self._stream is not None:
+            self._stream.write(text)
+            self._stream.flush()

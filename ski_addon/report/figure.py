@@ -1,0 +1,72 @@
+"""The report as one figure: where each plot stands, and the title over them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from .. import atomic
+from ..errors import RecordingError
+from ..spec import RunSpec
+from . import panels
+from .style import INK, QUIET, RC
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+
+SIZE_INCHES = (14.0, 13.5)
+DPI = 110
+MARGINS = {"left": 0.055, "right": 0.975, "top": 0.915, "bottom": 0.045}
+PANELS = (
+    (panels.draw_lean, panels.draw_speed),
+    (panels.draw_ski_forces, panels.draw_force_split),
+    (panels.draw_torques, panels.draw_errors),
+)
+"""Plots over time, row by row."""
+
+
+def draw_figure(recording: Recording) -> Figure:
+    """Return the report of a recording as a matplotlib figure (drawn without a display)."""
+    if not len(recording.time):
+        raise RecordingError("given", "it holds no steps to draw")
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=SIZE_INCHES, dpi=DPI, facecolor="white")
+        FigureCanvasAgg(figure)
+        grid = figure.add_gridspec(4, 2, height_ratios=(0.95, 1, 1, 1), hspace=0.42, wspace=0.14, **MARGINS)
+        track_axes = figure.add_subplot(grid[0, :])
+        colours = panels.draw_track(track_axes, recording)
+        bar = figure.colorbar(colours, ax=track_axes, pad=0.01, fraction=0.02)
+        bar.ax.set_title("m/s", loc="center", fontsize=9, fontweight="normal")
+        for row, pair in enumerate(PANELS, start=1):
+            for column, draw in enumerate(pair):
+                axes = figure.add_subplot(grid[row, column])
+                draw(axes, recording)
+                if row == len(PANELS):
+                    axes.set_xlabel("s")
+        _write_title(figure, recording)
+    return figure
+
+
+def save_figure(figure: Figure, target: Path) -> None:
+    """Write the figure as a picture file in one step."""
+    with atomic.atomic_path(target) as temporary, matplotlib.rc_context(RC):
+        figure.savefig(temporary, metadata={"Software": "Ski Addon"} if target.suffix == ".png" else None)
+
+
+def _write_title(figure: Figure, recording: Recording) -> None:
+    spec = RunSpec.from_text(recording.header["spec"], "the run document in the recording")
+    status = recording.header["status"]
+    course = spec.course
+    facts = (
+        f"{spec.skier.mass:g} kg, {spec.skier.height:g} m on {spec.slope.angle_deg:g} degrees: "
+        f"{course.turn_count} turns of {course.turn_radius:g} m, {course.turn_duration:g} s each, "
+        f"{course.transition_duration:g} s between them"
+    )
+    ended = "" if status == "finished" else f" ({status} at {float(recording.time[-1]):.2f} s)"
+    figure.text(0.055, 0.972, spec.name + ended, fontsize=17, fontweight="bold", color=INK, va="center")
+    figure.text(0.055, 0.949, facts, fontsize=10.5, color=INK, va="center")
+    figure.text(0.975, 0.949, "grey: transition between turns", fontsize=9, color=QUIET, va="center", ha="right")

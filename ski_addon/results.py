@@ -1,0 +1,172 @@
+"""The one place where commands call planning, simulation, report and Blender, all imported when they are used."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import atomic
+from .errors import (
+    BlenderMissingError,
+    Cancelled,
+    MissingLibraryError,
+    SimulationDiverged,
+    SkierFell,
+    one_line,
+)
+from .spec import RunSpec
+from .talk import Talk, json_text
+
+if TYPE_CHECKING:
+    from .simulation.recording import Recording
+
+Progress = Callable[[float, str], Any]
+STROBE_INSTANTS = 10
+
+
+def check_blender(needed_for: str) -> None:
+    """Raise `BlenderMissingError` unless `bpy` can be found (it is not imported)."""
+    if "bpy" not in sys.modules and importlib.util.find_spec("bpy") is None:
+        raise BlenderMissingError(needed_for)
+
+
+def check_matplotlib() -> None:
+    """Raise `MissingLibraryError` unless matplotlib can be found."""
+    if not _has_matplotlib():
+        raise MissingLibraryError("matplotlib", "the report")
+
+
+def plan_summary(spec: RunSpec) -> dict[str, Any]:
+    """Plan a run and return the planned numbers (SI units, degrees in keys ending in `_deg`)."""
+    import numpy as np
+
+    from .pipeline import make_plan
+
+    plan = make_plan(spec).plan
+    degrees = np.degrees
+    return {
+        "name": spec.name,
+        "spec_hash": spec.content_hash(),
+        "length_m": float(plan.arc_length[-1] - plan.arc_length[0]),
+        "duration_s": float(plan.time[-1] - plan.time[0]),
+        "speed_min": float(plan.speed.min()),
+        "speed_max": float(plan.speed.max()),
+        "speed_end": float(plan.speed[-1]),
+        "inclination_max_deg": float(degrees(abs(plan.inclination).max())),
+        "edge_angle_max_deg": float(degrees(abs(plan.edge_angle).max())),
+        "load_min_bw": float(plan.load.min()),
+        "load_max_bw": float(plan.load.max()),
+    }
+
+
+def plan_lines(summary: Mapping[str, Any]) -> list[str]:
+    """Return the lines of a plan's summary for a screen."""
+    forms = (
+        "  {length_m:.0f} m in {duration_s:.1f} s",
+        "  speed {speed_min:.1f} to {speed_max:.1f} m/s, {speed_end:.1f} m/s at the end",
+        "  leans up to {inclination_max_deg:.0f} degrees, edges up to {edge_angle_max_deg:.0f} degrees",
+        "  {load_min_bw:.2f} to {load_max_bw:.2f} body weights on the snow",
+    )
+    return [form.format(**summary) for form in forms]
+
+
+def simulate_run(spec: RunSpec, progress: Progress) -> tuple[Recording, dict[str, Any]]:
+    """Plan and simulate a run; returns its recording and summary, also if the skier fell."""
+    from .pipeline import make_plan, run_simulation
+    from .simulation.summary import summarise
+
+    progress(0.0, "planning")
+    recording = run_simulation(make_plan(spec), progress)
+    return recording, summarise(recording, spec)
+
+
+def load_recording(path: Path) -> Recording:
+    """Read a recording; raises `RecordingError` or `MissingInputError`."""
+    from .simulation.recording import Recording
+
+    return Recording.load(path)
+
+
+def recorded_spec(recording: Recording) -> RunSpec:
+    """Return the run document that a recording was made from."""
+    return RunSpec.from_text(recording.header["spec"], "the run document in the recording")
+
+
+def raise_unless_finished(recording: Recording) -> None:
+    """Raise what happened to the skier, if the run was not skied to its end."""
+    status, detail = recording.header["status"], recording.header.get("status_detail") or {}
+    if status == "finished":
+        return
+    if status == "cancelled":
+        raise Cancelled("interrupted: the recording up to there was kept")
+    kind = SimulationDiverged if status == "diverged" else SkierFell
+    where, when = detail.get("where"), detail.get("time")
+    where = float(recording.arc_length[-1]) if where is None else where
+    raise kind(
+        detail.get("what", "the run ended early"),
+        where,
+        float(recording.time[-1]) if when is None else when,
+        detail.get("why", "no reason was recorded"),
+    )
+
+
+def write_run(
+    folder: Path, spec: RunSpec, recording: Recording, summary: Mapping[str, Any], *, report: bool, talk: Talk
+) -> None:
+    """Write spec.toml, recording.npz, summary.json and (if asked and matplotlib is there) report.png, all or none.
+
+    A report.png of an earlier run goes if there is no new one: it would show another recording.
+    """
+    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=folder) as temporary:
+        stage = Path(temporary)
+        (stage / "spec.toml").write_text(spec.to_toml(), encoding="utf-8")
+        (stage / "summary.json").write_text(json_text(summary), encoding="utf-8")
+        recording.save(stage / "recording.npz")
+        if report:
+            _report_if_possible(recording, stage / "report.png", talk)
+        if not (stage / "report.png").exists():
+            (folder / "report.png").unlink(missing_ok=True)
+        atomic.move_all(stage, folder)
+
+
+def _report_if_possible(recording: Recording, target: Path, talk: Talk) -> None:
+    if not _has_matplotlib():
+        talk.say("no report.png: matplotlib is not installed (pip install matplotlib)")
+        return
+    draw_report(recording, target)
+
+
+def draw_report(recording: Recording, target: Path) -> None:
+    """Draw the plots of a recording into a picture."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its notes on font caches are not for our users
+    from .report import save_report
+
+    save_report(recording, target)
+
+
+def bake(recording: Recording, spec: RunSpec, target: Path) -> None:
+    """Bake a recording into a .blend file."""
+    from .blender.headless import bake_file
+
+    bake_file(recording, spec, target)
+
+
+def render_strobe(recording: Recording, spec: RunSpec, target: Path) -> None:
+    """Render one picture of the slope with the skier at several instants."""
+    from .blender.strobe import render_strobe as render
+
+    render(recording, spec, target)
+
+
+def complain(message: str) -> None:
+    """Say one failure on stderr and go on."""
+    sys.stderr.write(f"ski_addon: {one_line(message)}\n")
+
+
+def _has_matplotlib() -> bool:
+    return importlib.util.find_spec("matplotlib") is not None

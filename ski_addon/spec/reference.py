@@ -1,0 +1,98 @@
+"""The key reference in docs/run_spec.md, made from the table of keys: `python -m ski_addon.spec.reference`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .. import atomic
+from .fields import CHOICE, FLAG, TEXT, FieldInfo
+from .table import SECTIONS, section_fields
+
+HEAD = """\
+# The run document
+
+A run is one TOML file: who skis, on which slope and track, how, on what snow, and how the motion is baked. The command
+line, the sidebar in Blender and the presets all use this document. `presets/runs` holds whole runs; `presets/skiers`,
+`presets/snow` and `presets/styles` hold parts, documents of one section that are laid over a run.
+
+A short one, with all it must have:
+
+```toml
+name = "Evening run"
+
+[slope]
+angle_deg = 9
+
+[course]
+kind = "turns"
+turn_count = 6
+turn_duration = 1.2
+transition_duration = 1.5
+turn_radius = 15
+```
+
+Keys marked *required* must be in a file; all others have the default shown. Units are SI; angles are in degrees only in
+keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an unknown
+key, a wrong type or a value outside its range is refused with one line that names the file, the line in it, the key, its
+value and what is allowed:
+
+```
+run.toml line 11: course.turn_radius = 1.0 is outside 3..200 m: give a number in that range
+```
+
+On the command line single keys are changed with `--set`, where words need no quotes
+(`--set course.turn_radius=18 --set technique.angulation=auto`), and parts are laid over a run with `--part`.
+
+This page is made from the table of keys in `ski_addon/spec/sections.py` by `python -m ski_addon.spec.reference`.
+"""
+
+
+def key_reference() -> str:
+    """Return the reference page of all keys as Markdown."""
+    tables = [_table("Document", section_fields(""))]
+    tables += [
+        _table(f"[{section}]", section_fields(section), (cls.__doc__ or "")) for section, cls in SECTIONS.items()
+    ]
+    return "\n".join((HEAD, *tables))
+
+
+def write_reference(path: Path | None = None) -> Path:
+    """Write the reference page (docs/run_spec.md if no path is given) and return where."""
+    path = path or Path(__file__).resolve().parent.parent.parent / "docs" / "run_spec.md"
+    atomic.write_text(path, key_reference())
+    return path
+
+
+def _table(title: str, infos: tuple[FieldInfo, ...], text: str = "") -> str:
+    lines = [
+        f"## {title}",
+        *([text, ""] if text else [""]),
+        "| key | default | allowed | meaning |",
+        "|---|---|---|---|",
+    ]
+    lines += [f"| `{info.name}` | {_default(info)} | {_allowed(info)} | {_meaning(info)} |" for info in infos]
+    return "\n".join(lines) + "\n"
+
+
+def _default(info: FieldInfo) -> str:
+    if info.required:
+        return "*required*"
+    if isinstance(info.default, str):
+        return f'`"{info.default}"`'
+    return f"`{str(info.default).lower()}`" if info.kind == FLAG else f"`{info.default:g}`"
+
+
+def _allowed(info: FieldInfo) -> str:
+    if info.kind == CHOICE:
+        return ", ".join(f'`"{word}"`' for word in info.choices)
+    if info.kind in (FLAG, TEXT) or not info.word:
+        return info.allowed
+    return info.allowed.replace(f"or {info.word}", f'or `"{info.word}"`')
+
+
+def _meaning(info: FieldInfo) -> str:
+    return f"{info.doc} (advanced)" if info.advanced else info.doc
+
+
+if __name__ == "__main__":
+    write_reference()

@@ -1,0 +1,79 @@
+"""What a command says, and where: results on stdout, progress where it does not disturb them."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TextIO
+
+from .progress import ProgressDisplay
+
+SUMMARY_LINES = (
+    ("duration_s", "skied", "{:.2f} s"),
+    ("speed_max", "fastest", "{:.1f} m/s"),
+    ("inclination_max_deg", "most lean", "{:.0f} degrees"),
+    ("edge_angle_max_deg", "most edging", "{:.0f} degrees"),
+    ("snow_force_max_bw", "most snow force", "{:.2f} body weights"),
+    ("torque_ratio_max", "hardest joint", "{:.0%} of its strength"),
+    ("ski_error_max_m", "skis off the track", "{:.2g} m at most"),
+    ("step_us_median", "a step took", "{:.0f} us"),
+)
+"""Keys of a summary shown on a screen, with their label and format."""
+
+
+@dataclass(frozen=True)
+class Talk:
+    """How a command talks: with `json` only JSON goes to stdout, with `quiet` only failures are said."""
+
+    json: bool = False
+    quiet: bool = False
+
+    def say(self, line: str) -> None:
+        """Say one line for a person."""
+        if not (self.json or self.quiet):
+            sys.stdout.write(line + "\n")
+            sys.stdout.flush()
+
+    def give(self, result: object) -> None:
+        """Give the machine-readable result."""
+        if self.json:
+            sys.stdout.write(json_text(result))
+            sys.stdout.flush()
+
+    def progress(self) -> ProgressDisplay:
+        """Return a progress display: a bar on a terminal; plain lines on stdout, unless that is to hold JSON."""
+        return ProgressDisplay(self._progress_stream())
+
+    def _progress_stream(self) -> TextIO | None:
+        if self.quiet:
+            return None
+        if sys.stderr.isatty():
+            return sys.stderr
+        return None if self.json else sys.stdout
+
+
+def summary_lines(summary: Mapping[str, Any]) -> list[str]:
+    """Return the lines of a summary that a person wants to see."""
+    width = max(len(label) for _, label, _ in SUMMARY_LINES)
+    known = [(label, form, summary.get(key)) for key, label, form in SUMMARY_LINES]
+    return [f"  {label.ljust(width)}  {form.format(value)}" for label, form, value in known if value is not None]
+
+
+def json_text(value: object) -> str:
+    """Return indented JSON with a newline at the end; numbers that JSON does not know become null."""
+    return json.dumps(_plain(value), indent=2, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):  # numpy
+        return _plain(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if isinstance(value, str | int | float | bool | None) else str(value)

@@ -1,0 +1,88 @@
+"""A recording made from formulas, for tests of what only reads recordings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ski_addon.spec import RunSpec
+
+HINGES = tuple(
+    f"{body}_{axis}{side}"
+    for side, bodies in (
+        ("", {"abdomen": "yxz", "chest": "yxz", "head": "yxz"}),
+        (".L", {"upper_arm": "yxz", "forearm": "y", "hand": "y", "thigh": "yxz", "shank": "y", "foot": "yx"}),
+        (".R", {"upper_arm": "yxz", "forearm": "y", "hand": "y", "thigh": "yxz", "shank": "y", "foot": "yx"}),
+    )
+    for body, axes in bodies.items()
+    for axis in axes
+)
+
+
+@dataclass(frozen=True)
+class SyntheticRecording:
+    """The fields of a recording that reports and commands read."""
+
+    header: dict[str, Any]
+    time: np.ndarray
+    arc_length: np.ndarray
+    speed: np.ndarray
+    track_position: np.ndarray
+    surface_normal: np.ndarray
+    phase: np.ndarray
+    inclination: np.ndarray
+    edge_angle: np.ndarray
+    snow_force: np.ndarray
+    torque_ratio: np.ndarray
+    ski_error: np.ndarray
+    com_error: np.ndarray
+
+    def save(self, path: Path) -> None:
+        """Write the arrays as a stand-in for a recording."""
+        np.savez(path, time=self.time)
+
+
+def synthetic_recording(
+    spec: RunSpec | None = None,
+    *,
+    duration: float = 12.0,
+    status: str = "finished",
+    detail: dict[str, Any] | None = None,
+) -> SyntheticRecording:
+    """Sinusoidal turns of 5 s period on a slope of 10 degrees, at 8 m/s, left turn first; 100 samples a second."""
+    spec = spec or RunSpec()
+    time = np.arange(0.0, duration, 0.01)
+    swing = np.sin(2 * np.pi * time / 5.0)
+    tilt = np.radians(10.0)
+    normal = np.tile([np.sin(tilt), 0.0, np.cos(tilt)], (len(time), 1))
+    x, y = 8.0 * time, 4.0 * np.cumsum(np.sin(2 * np.pi * (time - 1.25) / 5.0)) * 0.01
+    inclination = np.radians(30.0) * swing
+    weight = 9.81 * spec.skier.mass
+    left = np.array([0.0, 1.0, 0.0])
+    share = np.stack((0.5 - 0.2 * swing, 0.5 + 0.2 * swing), axis=1)
+    total = weight * ((1 - 0.2 * (swing**2 < 0.1))[:, None] * normal + np.tan(inclination)[:, None] * left)
+    return SyntheticRecording(
+        header={
+            "spec": spec.to_toml(),
+            "spec_hash": spec.content_hash(),
+            "status": status,
+            "status_detail": detail or {},
+            "joint_names": list(HINGES),
+            "gravity": [0.0, 0.0, -9.81],
+        },
+        time=time,
+        arc_length=8.0 * time,
+        speed=8.0 + swing**2,
+        track_position=np.stack((x, y, -x * np.tan(tilt)), axis=1),
+        surface_normal=normal,
+        phase=np.where(np.abs(swing) > 0.5, np.sign(swing), 0).astype(np.int8),
+        inclination=inclination,
+        edge_angle=np.stack((inclination * 1.1, inclination * 1.2), axis=1),
+        snow_force=share[:, :, None] * total[:, None, :],
+        torque_ratio=np.abs(swing)[:, None] * np.linspace(0.1, 0.8, len(HINGES)),
+        ski_error=0.002 * np.abs(swing),
+        com_error=0.001 * np.abs(swing),
+    )
