@@ -21,7 +21,7 @@ env: .venv/.complete
 # An environment that is there already is brought up to date, never thrown away.
 .venv/.complete: pyproject.toml
 	@test -x $(PY) || { python=$$(.ci/find-python) && echo "making .venv with $$python" && "$$python" -m venv .venv; }
-	$(PY) -m pip install --quiet --disable-pip-version-check --editable '.[blender,dev]'
+	$(PY) -m pip install -qq --disable-pip-version-check --editable '.[blender,dev]'
 	@touch $@
 
 test: test-core test-blender

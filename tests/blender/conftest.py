@@ -21,7 +21,7 @@ import pytest
 PACKAGE = "bl_ext.user_default.ski_addon"
 ROOT = Path(__file__).resolve().parents[2]
 
-# Blender reads this when bpy is imported: settings, scripts and extensions of the person running the tests stay untouched.
+# Blender reads this when bpy is imported: the settings and extensions of whoever runs the tests stay untouched.
 _user_folder = Path(tempfile.mkdtemp(prefix="ski_addon_user_"))
 os.environ["BLENDER_USER_RESOURCES"] = str(_user_folder)
 _exit_code = 0
