@@ -10,7 +10,7 @@ import sys
 import traceback
 from collections.abc import Iterator, Sequence
 from types import FrameType
-from typing import NoReturn
+from typing import NoReturn, TypeAlias
 
 from . import __version__, commands
 from .errors import Cancelled, SkiAddonError, one_line
@@ -101,7 +101,7 @@ def _signals_as_interrupt() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-_Subparsers = "argparse._SubParsersAction[argparse.ArgumentParser]"
+_Subparsers: TypeAlias = "argparse._SubParsersAction[OneLineParser]"
 
 
 def _command(subparsers: _Subparsers, name: str, summary: str, details: str = "") -> argparse.ArgumentParser:

@@ -13,7 +13,7 @@ LEFT, RIGHT, THIRD, INK, QUIET = "#0072B2", "#D55E00", "#009E73", "#22303C", "#9
 TRANSITION = "#E8ECF1"
 SPEED_MAP = "viridis"
 
-RC = {
+RC: dict[Any, Any] = {
     "font.size": 9.5,
     "axes.edgecolor": QUIET,
     "axes.labelcolor": INK,

@@ -5,6 +5,7 @@ Validation, the key reference in `docs/run_spec.md` and Blender's properties are
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -52,8 +53,17 @@ class FieldInfo:
             return ", ".join(self.choices)
         if self.kind == TEXT:
             return f"at most {self.high:g} characters"
-        span = f"{self.low:g}..{self.high:g}{' ' + self.unit if self.unit else ''}"
+        span = f"{show_number(self.low)}..{show_number(self.high)}{' ' + self.unit if self.unit else ''}"
         return f"{span} or {self.word}" if self.word else span
+
+
+def show_number(value: float | None) -> str:
+    """Return a number as people write it: 0.25, 15, 1.2e8."""
+    if value is None:
+        return "any"
+    if value == int(value) and (abs(value) < 1e6 or value % 1e6):
+        return str(int(value))
+    return re.sub(r"e([+-])0*", lambda sign: "e" + sign[1].replace("+", ""), f"{value:g}")
 
 
 def _leaf(default: Any, **metadata: Any) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from .. import atomic
-from .fields import CHOICE, FLAG, TEXT, FieldInfo
+from .fields import CHOICE, FLAG, TEXT, FieldInfo, show_number
 from .table import SECTIONS, section_fields
 
 HEAD = """\
@@ -32,9 +32,9 @@ turn_radius = 15
 ```
 
 Keys marked *required* must be in a file; all others have the default shown. Units are SI; angles are in degrees only in
-keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an unknown
-key, a wrong type or a value outside its range is refused with one line that names the file, the line in it, the key, its
-value and what is allowed:
+keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an
+unknown key, a wrong type or a value outside its range is refused with one line that names the file, the line in it, the
+key, its value and what is allowed:
 
 ```
 run.toml line 11: course.turn_radius = 1.0 is outside 3..200 m: give a number in that range
@@ -49,11 +49,8 @@ This page is made from the table of keys in `ski_addon/spec/sections.py` by `pyt
 
 def key_reference() -> str:
     """Return the reference page of all keys as Markdown."""
-    tables = [_table("Document", section_fields(""))]
-    tables += [
-        _table(f"[{section}]", section_fields(section), (cls.__doc__ or "")) for section, cls in SECTIONS.items()
-    ]
-    return "\n".join((HEAD, *tables))
+    sections = [_table(f"[{name}]", section_fields(name), cls.__doc__ or "") for name, cls in SECTIONS.items()]
+    return "\n".join((HEAD, _table("Document", section_fields("")), *sections))
 
 
 def write_reference(path: Path | None = None) -> Path:
@@ -64,14 +61,9 @@ def write_reference(path: Path | None = None) -> Path:
 
 
 def _table(title: str, infos: tuple[FieldInfo, ...], text: str = "") -> str:
-    lines = [
-        f"## {title}",
-        *([text, ""] if text else [""]),
-        "| key | default | allowed | meaning |",
-        "|---|---|---|---|",
-    ]
-    lines += [f"| `{info.name}` | {_default(info)} | {_allowed(info)} | {_meaning(info)} |" for info in infos]
-    return "\n".join(lines) + "\n"
+    rows = (f"| `{info.name}` | {_default(info)} | {_allowed(info)} | {_meaning(info)} |" for info in infos)
+    head = (f"## {title}", text, "", "| key | default | allowed | meaning |", "|---|---|---|---|")
+    return "\n".join((*head, *rows)).replace("\n\n\n", "\n\n") + "\n"
 
 
 def _default(info: FieldInfo) -> str:
@@ -79,7 +71,7 @@ def _default(info: FieldInfo) -> str:
         return "*required*"
     if isinstance(info.default, str):
         return f'`"{info.default}"`'
-    return f"`{str(info.default).lower()}`" if info.kind == FLAG else f"`{info.default:g}`"
+    return f"`{str(info.default).lower()}`" if info.kind == FLAG else f"`{show_number(info.default)}`"
 
 
 def _allowed(info: FieldInfo) -> str:

@@ -107,7 +107,7 @@ class RunSpec:
         return changed
 
 
-def _replaced(spec: RunSpec, key: str, value: object) -> RunSpec:
+def _replaced(spec: RunSpec, key: str, value: Any) -> RunSpec:
     section, _, name = key.rpartition(".")
     if not section:
         return dataclasses.replace(spec, **{name: value})

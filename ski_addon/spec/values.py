@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+import unicodedata
 from typing import TYPE_CHECKING, Any
 
 from ..errors import SpecError
@@ -68,8 +69,8 @@ def _check_text(info: FieldInfo, value: object) -> None:
     if len(value) > (info.high or 0):
         problem = f"has {len(value)} characters, allowed are"
         raise SpecError(info.key, value, info.allowed, "shorten it", problem=problem)
-    if not value.isprintable() and not set(filter(lambda c: not c.isprintable(), value)) <= {"\n", "\t"}:
-        raise SpecError(info.key, value, problem="has characters that cannot be printed", hint="remove them")
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in value if letter not in "\n\t"):
+        raise SpecError(info.key, value, problem="has control characters", hint="remove them")
 
 
 def _check_number(info: FieldInfo, value: Any, spec: RunSpec | None) -> None:
