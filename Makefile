@@ -20,7 +20,10 @@ env: .venv/.complete
 
 # An environment that is there already is brought up to date, never thrown away.
 .venv/.complete: pyproject.toml
-	@test -x $(PY) || { python=$$(.ci/find-python) && echo "making .venv with $$python" && "$$python" -m venv .venv; }
+	@if test -x $(PY); then \
+	  PYTHON=$(PY) .ci/find-python >/dev/null 2>&1 || { echo ".venv was made with a Python that no bpy wheel fits:" \
+	    "remove it and run make env with Python 3.11 or 3.13" >&2; exit 1; }; \
+	else python=$$(.ci/find-python) && echo "making .venv with $$python" && "$$python" -m venv .venv; fi
 	$(PY) -m pip install -qq --disable-pip-version-check --editable '.[blender,dev]'
 	@touch $@
 
