@@ -24,6 +24,7 @@ env: .venv/.complete
 	  PYTHON=$(PY) .ci/find-python >/dev/null 2>&1 || { echo ".venv was made with a Python that no bpy wheel fits:" \
 	    "remove it and run make env with Python 3.11 or 3.13" >&2; exit 1; }; \
 	else python=$$(.ci/find-python) && echo "making .venv with $$python" && "$$python" -m venv .venv; fi
+	@$(PY) -m pip --version >/dev/null 2>&1 || $(PY) -m ensurepip
 	$(PY) -m pip install -qq --disable-pip-version-check --editable '.[blender,dev]'
 	@touch $@
 
