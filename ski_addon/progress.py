@@ -11,7 +11,7 @@ from .spec.estimate import show_duration
 
 BAR_WIDTH = 28
 REDRAW_SECONDS = 0.1
-PLAIN_STEP = 0.1
+PLAIN_PARTS = 10
 
 
 class ProgressDisplay:
@@ -28,21 +28,21 @@ class ProgressDisplay:
         self._text = ""
         self._started = clock()
         self._drawn_at = float("-inf")
-        self._plain_next = PLAIN_STEP
+        self._parts_said = 0
         self._width = 0
 
     def __call__(self, fraction: float, text: str) -> bool:
         """Show that `fraction` (0..1) of the work named `text` is done; returns True (never cancels)."""
         fraction = min(max(fraction, 0.0), 1.0)
         if text != self._text:
-            self._text, self._started, self._plain_next = text, self._clock(), PLAIN_STEP
+            self._text, self._started, self._parts_said = text, self._clock(), 0
             self._drawn_at = float("-inf")
         if self._stream is None:
             return True
         if self._terminal:
             self._draw_bar(fraction)
-        elif fraction >= self._plain_next - 1e-9:
-            self._plain_next = (fraction // PLAIN_STEP + 1) * PLAIN_STEP
+        elif (part := int(fraction * PLAIN_PARTS + 1e-9)) > self._parts_said:
+            self._parts_said = part
             self._write(f"{self._text}: {fraction:4.0%}{self._time_left(fraction)}\n")
         return True
 

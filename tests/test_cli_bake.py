@@ -1,0 +1,134 @@
+"""The commands that need Blender, with stand-ins for it: bake and demo."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+
+import pytest
+
+from ski_addon import cli, results
+from ski_addon.errors import RecordingError, RenderError
+from ski_addon.spec import RunSpec
+from tests.synthetic_recording import synthetic_recording
+
+
+@pytest.fixture
+def blender(monkeypatch):
+    """Stand-ins for everything behind `results`; what was baked or rendered is remembered."""
+    done = {}
+    recorded = synthetic_recording(RunSpec(name="Recorded"))
+
+    def bake(recording, spec, target):
+        done["bake"] = (recording, spec, target)
+        target.write_text("BLENDER")
+
+    def strobe(recording, spec, target):
+        done["strobe"] = target
+        target.write_text("PNG")
+
+    def simulate(spec, progress):
+        progress(1.0, "simulating")
+        return synthetic_recording(spec, status=done.get("status", "finished")), {"status": "finished"}
+
+    def load(path):
+        if not path.exists():
+            raise RecordingError(path, "there is no such file")
+        return recorded
+
+    for name, stand_in in {
+        "check_blender": lambda needed_for: None,
+        "bake": bake,
+        "render_strobe": strobe,
+        "simulate_run": simulate,
+        "load_recording": load,
+    }.items():
+        monkeypatch.setattr(results, name, stand_in)
+    return done
+
+
+@pytest.fixture
+def run(capsys):
+    def call(*arguments):
+        code = cli.main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return call
+
+
+def files(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+@pytest.mark.parametrize("source", ["", "recording.npz"])
+def test_bake_takes_a_recording_or_its_folder_and_writes_beside_it(run, blender, tmp_path, source):
+    (tmp_path / "recording.npz").write_text("")
+    code, out, err = run("bake", tmp_path / source if source else tmp_path)
+    assert (code, err) == (0, "") and f"wrote {tmp_path / 'skier.blend'}" in out
+    assert blender["bake"][1].name == "Recorded" and (tmp_path / "skier.blend").exists()
+
+
+def test_bake_settings_of_a_recording_can_be_changed_but_not_its_physics(run, blender, tmp_path):
+    (tmp_path / "recording.npz").write_text("")
+    code, out, _ = run("bake", tmp_path, "--set", "bake.fps=30", "-o", tmp_path / "out" / "a.blend", "--json")
+    assert code == 0 and json.loads(out)["blend"].endswith("a.blend")
+    assert blender["bake"][1].bake.fps == 30.0 and blender["bake"][2] == tmp_path / "out" / "a.blend"
+    code, _, err = run("bake", tmp_path, "--set", "skier.mass=80", "-o", tmp_path / "b.blend")
+    assert code == 2 and "skier.mass cannot be changed in a recording" in err
+    code, _, err = run("bake", tmp_path, "--part", "soft", "-o", tmp_path / "b.blend")
+    assert code == 2 and "--part cannot be laid over a recording" in err
+    assert not (tmp_path / "b.blend").exists()
+
+
+def test_bake_of_a_run_simulates_first(run, blender, tmp_path):
+    code, _, err = run("bake", "paper_main", "--set", "skier.mass=80", "-o", tmp_path / "a.blend")
+    assert (code, err) == (0, "") and blender["bake"][1].skier.mass == 80.0
+    blender["status"] = "fell"
+    code, _, err = run("bake", "paper_main", "-o", tmp_path / "b.blend")
+    assert code == 5 and err.count("\n") == 1 and files(tmp_path) == ["a.blend"]
+
+
+def test_bake_of_a_missing_recording_leaves_no_folder(run, blender, tmp_path):
+    code, _, err = run("bake", tmp_path / "none.npz", "-o", tmp_path / "out" / "a.blend")
+    assert code == 3 and "there is no such file" in err and files(tmp_path) == []
+
+
+@pytest.mark.parametrize("arguments", [["bake", "paper_main", "-o"], ["demo", "-o"]])
+def test_without_blender_one_line_and_exit_code_4_before_anything_is_done(run, monkeypatch, tmp_path, arguments):
+    find = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "bpy" else find(name))
+    monkeypatch.delitem(results.sys.modules, "bpy", raising=False)
+    code, out, err = run(*arguments, tmp_path / "out")
+    assert (code, out) == (4, "") and err.count("\n") == 1 and "Blender is needed for" in err
+    assert files(tmp_path) == []
+
+
+def test_demo_writes_all_it_promises(run, blender, tmp_path):
+    code, out, err = run("demo", "-o", tmp_path)
+    assert (code, err) == (0, "") and "Giant slalom: finished" in out
+    assert files(tmp_path) == [
+        "recording.npz",
+        "report.png",
+        "skier.blend",
+        "spec.toml",
+        "strobe.png",
+        "summary.json",
+    ]
+
+
+def test_picture_that_cannot_be_rendered_is_exit_code_7(run, blender, monkeypatch, tmp_path):
+    def fail(recording, spec, target):
+        raise RenderError("Cycles could not render strobe.png: no device")
+
+    monkeypatch.setattr(results, "render_strobe", fail)
+    code, _, err = run("demo", "-o", tmp_path, "--quiet")
+    assert code == 7 and err == "ski_addon: Cycles could not render strobe.png: no device\n"
+
+
+def test_report_is_drawn_beside_the_recording(run, blender, tmp_path):
+    (tmp_path / "recording.npz").write_text("")
+    code, out, err = run("report", tmp_path)
+    assert (code, err) == (0, "") and (tmp_path / "report.png").read_bytes().startswith(b"\x89PNG")
+    assert run("report", tmp_path / "recording.npz", "-o", tmp_path / "other.png")[0] == 0
+    assert files(tmp_path) == ["other.png", "recording.npz", "report.png"]
