@@ -1,0 +1,22 @@
+"""Whole-body control: tasks, the quadratic program and its solver [SG19 sec. 6]."""
+
+from .controller import Command, Controller
+from .dynamics import Dynamics
+from .formulation import Formulation, Problem
+from .gains import Gains, TaskGain
+from .solver import OsqpSolver, Solution
+from .tasks import TaskSet, progress_rate
+
+__all__ = [
+    "Command",
+    "Controller",
+    "Dynamics",
+    "Formulation",
+    "Gains",
+    "OsqpSolver",
+    "Problem",
+    "Solution",
+    "TaskGain",
+    "TaskSet",
+    "progress_rate",
+]

@@ -1,0 +1,85 @@
+"""One step of control: reference at the skier's progress, tasks, program, torques and snow forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..planning import Reference
+from ..snow import Snow
+from .dynamics import Dynamics
+from .formulation import Formulation
+from .gains import Gains
+from .solver import OsqpSolver, Solution
+from .tasks import Desired, TaskSet, progress_rate
+
+
+@dataclass(frozen=True)
+class Command:
+    """What the controller decided at one step.
+
+    `torque` (31,) [N m]; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
+    `ski_force` (2, 3) [N, world]; `rate` [m/s] of progress; `sample` (3, width) the reference; `edge_angle` (2,) [rad]
+    of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
+    """
+
+    torque: np.ndarray
+    snow: np.ndarray
+    edge_normal: np.ndarray
+    edge_side: np.ndarray
+    ski_force: np.ndarray
+    rate: float
+    sample: np.ndarray
+    edge_angle: np.ndarray
+    root_residual: float
+    solution: Solution
+
+
+class Controller:
+    """Computes torques and snow forces that follow a reference."""
+
+    def __init__(self, dynamics: Dynamics, reference: Reference, snow: Snow, segments: int, gains: Gains) -> None:
+        """Set up tasks, formulation and solver for one skier on one plan."""
+        self.dynamics, self.reference = dynamics, reference
+        self.tasks = TaskSet(reference, gains, dynamics)
+        self.formulation = Formulation(dynamics.model, snow, gains, segments)
+        self.solver = OsqpSolver(self.formulation)
+        self._normal = reference.columns["normal"]
+
+    @property
+    def desired(self) -> Desired:
+        """The tasks' last desired accelerations and errors."""
+        return self.tasks.desired
+
+    def step(self, progress: float) -> Command:
+        """Return the command at the dynamics' present state with the skier `progress` [m] along the track."""
+        dynamics, formulation = self.dynamics, self.formulation
+        sample = self.reference.at(progress)
+        rate = progress_rate(self.reference, sample, dynamics)
+        desired = self.tasks.update(sample, rate)
+        normal = sample[0, self._normal]
+        edge_angle = np.array([edge_angle_of(dynamics.ski_rotation(ski), normal) for ski in range(2)])
+        problem = formulation.build(dynamics, desired, edge_angle, normal)
+        solution = self.solver.solve(problem)
+        x = solution.unknowns
+        torque = formulation.torques(dynamics, x)
+        edge_normal, edge_side = formulation.edge_forces(x)
+        return Command(
+            torque=np.clip(torque, dynamics.model.torque_lower, dynamics.model.torque_upper),
+            snow=formulation.snow_force(x),
+            edge_normal=edge_normal,
+            edge_side=edge_side,
+            ski_force=formulation.ski_forces(x),
+            rate=rate,
+            sample=sample,
+            edge_angle=edge_angle,
+            root_residual=formulation.root_residual(dynamics, x),
+            solution=solution,
+        )
+
+
+def edge_angle_of(ski_rotation: np.ndarray, normal: np.ndarray) -> float:
+    """Return a ski's edge angle [rad] to a snow surface of unit `normal` (3,), positive when it tips to the left."""
+    across, up = ski_rotation[:, 1], ski_rotation[:, 2]
+    return float(-np.arctan2(across @ normal, up @ normal))

@@ -1,0 +1,111 @@
+"""Solves the controller's quadratic program with OSQP: set up once, then updated and warm started.
+
+Settings are deterministic: nothing depends on wall time. The rows are scaled by the formulation, so OSQP's own
+scaling, which would be redone at every update, stays off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .formulation import Formulation, Problem
+
+SOLVED = 1
+"""OSQP's status value for a solution within tolerance."""
+TOLERANCE = 1e-5
+MOST_ITERATIONS = 4000
+HARD_ITERATIONS = 40000
+"""Iterations of further attempts, from a cold start."""
+UNBOUNDED = 1e6
+"""A bound [rad/s^2] that never binds; OSQP's early stopping dislikes infinities."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """`unknowns` (n,) of a program, `iterations` used, `status` 0 when converged and OSQP's status value otherwise;
+    `attempts` counts solves.
+    """
+
+    unknowns: np.ndarray
+    iterations: int
+    status: int
+    attempts: int
+
+
+class OsqpSolver:
+    """One OSQP workspace with the sparsity of a formulation."""
+
+    def __init__(self, formulation: Formulation) -> None:
+        """Set up with placeholder numbers; the first `solve` brings the real ones."""
+        import osqp
+        from scipy import sparse
+
+        hessian = sparse.csc_matrix(formulation.hessian_pattern, copy=True)
+        hessian.data[:] = 1e-9  # keeps the pattern; overwritten before the first solve
+        rows = formulation.rows
+        self._osqp = osqp.OSQP()
+        self._osqp.setup(
+            hessian,
+            np.zeros(formulation.unknowns),
+            formulation.constraint_pattern.copy(),
+            np.full(rows, -1.0),
+            np.full(rows, 1.0),
+            verbose=False,
+            scaling=0,
+            rho=0.1,
+            sigma=1e-6,
+            alpha=1.6,
+            adaptive_rho=0,
+            check_termination=5,
+            eps_abs=TOLERANCE,
+            eps_rel=TOLERANCE,
+            max_iter=MOST_ITERATIONS,
+            check_dualgap=False,
+            polishing=False,
+            warm_starting=True,
+        )
+        # the public update() and solve() copy everything into caches for derivatives: 70 microseconds a step
+        self._solver = self._osqp._solver
+        self._zero = (np.zeros(formulation.unknowns), np.zeros(rows))
+        self._hinge_rows = formulation.hinge_rows
+
+    def solve(self, problem: Problem) -> Solution:
+        """Solve `problem`, warm from the last solution.
+
+        When that fails it is tried again from cold with more iterations and, if it still fails, without the rows that
+        keep hinges in range: they can contradict the torque limits when a fall has begun. Never raises: a program that
+        did not converge comes back with its status.
+        """
+        solver = self._solver
+        solver.update_data_mat(P_x=problem.hessian, P_i=None, A_x=problem.constraints, A_i=None)
+        solution = self._attempt(problem.gradient, problem.lower, problem.upper, 1)
+        if solution.status == 0:
+            return solution
+        self._limit_iterations(HARD_ITERATIONS)
+        solver.warm_start(*self._zero)
+        solution = self._attempt(problem.gradient, problem.lower, problem.upper, 2)
+        if solution.status != 0:
+            lower, upper = problem.lower.copy(), problem.upper.copy()
+            lower[self._hinge_rows], upper[self._hinge_rows] = -UNBOUNDED, UNBOUNDED
+            solver.warm_start(*self._zero)
+            solution = self._attempt(problem.gradient, lower, upper, 3)
+        self._limit_iterations(MOST_ITERATIONS)
+        return solution
+
+    def _attempt(self, gradient: np.ndarray, lower: np.ndarray, upper: np.ndarray, attempt: int) -> Solution:
+        solver = self._solver
+        solver.update_data_vec(q=gradient, l=lower, u=upper)
+        solver.solve()
+        info = solver.info
+        status = 0 if info.status_val == SOLVED else int(info.status_val)
+        unknowns = np.array(solver.solution.x)
+        if status != 0 and not np.all(np.isfinite(unknowns)):  # OSQP gives no point when it proves infeasibility
+            unknowns = self._zero[0].copy()
+        return Solution(unknowns, int(info.iter), status, attempt)
+
+    def _limit_iterations(self, most: int) -> None:
+        settings = self._solver.get_settings()
+        settings.max_iter = most
+        self._solver.update_settings(settings)

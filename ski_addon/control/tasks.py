@@ -1,0 +1,158 @@
+"""Tasks: what each part of the body should accelerate like to follow the reference [SG19 Eq. 32-42].
+
+Desired accelerations are proportional-derivative laws on errors plus the reference's own acceleration. The reference
+is looked up at the skier's progress sigma along the track: with derivatives ' by arc length, velocity is X' sigma. and
+acceleration X'' sigma.^2 + X' sigma.. .
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..planning import Reference
+from .dynamics import Dynamics
+from .gains import Gains
+
+PROGRESS_PULL = 10.0
+"""Rate [1/s] at which progress is drawn to where the centre of mass is."""
+
+
+@dataclass
+class Desired:
+    """Desired accelerations and the errors behind them, overwritten each step.
+
+    `ski` (2, 6): linear [m/s^2] and angular [rad/s^2] in the reference ski's axes; `ski_axes` (2, 3, 3) those axes in
+    the world; `com` (2,) along the track's left and normal, `com_axes` (2, 3); `pelvis` (3,) [rad/s^2] in the
+    pelvis's axes; `joints` (31,); `angular_momentum_rate` (3,) [N m]; `ski_offset` (2, 3) position errors [m] and
+    `ski_turn` (2, 3) rotation errors [rad, world]; `com_offset` (3,) [m].
+    """
+
+    ski: np.ndarray = field(default_factory=lambda: np.zeros((2, 6)))
+    ski_axes: np.ndarray = field(default_factory=lambda: np.zeros((2, 3, 3)))
+    com: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    com_axes: np.ndarray = field(default_factory=lambda: np.zeros((2, 3)))
+    pelvis: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    joints: np.ndarray = field(default_factory=lambda: np.zeros(31))
+    angular_momentum_rate: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    ski_offset: np.ndarray = field(default_factory=lambda: np.zeros((2, 3)))
+    ski_turn: np.ndarray = field(default_factory=lambda: np.zeros((2, 3)))
+    com_offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+
+def progress_rate(reference: Reference, sample: np.ndarray, dynamics: Dynamics) -> float:
+    """Return sigma. [m/s], how fast the place whose reference the skier follows moves along the track.
+
+    A reference by time cannot be followed, for nothing drives a skier along the track but gravity: place and speed
+    along it are the skier's own. `sample` is the reference at the present place.
+    """
+    columns = reference.columns
+    tangent = sample[0, columns["tangent"]]
+    behind = float(tangent @ (dynamics.com - sample[0, columns["com"]]))
+    speed = float(tangent @ dynamics.com_velocity)
+    return (speed + PROGRESS_PULL * behind) / float(tangent @ sample[1, columns["com"]])
+
+
+class TaskSet:
+    """Evaluates `Desired` for a reference and gains."""
+
+    def __init__(self, reference: Reference, gains: Gains, dynamics: Dynamics) -> None:
+        """Bind to the reference's columns and the dynamics whose state is tracked."""
+        self.reference, self.gains, self.dynamics = reference, gains, dynamics
+        self.desired = Desired()
+        self._columns = reference.columns
+        self._joint_address = dynamics.model.actuated_qpos
+        self._reference_velocity = np.zeros(len(dynamics.model.body_dof))
+
+    def update(self, sample: np.ndarray, rate: float) -> Desired:
+        """Return the desired accelerations at reference `sample` (3, width) and progress `rate` [m/s]."""
+        columns, desired = self._columns, self.desired
+        value, slope, bend = sample
+        velocity = slope * rate
+        acceleration = bend * (rate * rate) + slope * float(value[columns["acceleration"]][0])
+        turning = columns["turning"]
+        spin = value[turning] * rate
+        spin_rate = slope[turning] * (rate * rate) + value[turning] * float(value[columns["acceleration"]][0])
+        quaternions = value[columns["quaternion"]].tolist()
+        for ski in range(2):
+            self._ski(ski, value, velocity, acceleration, spin, spin_rate, quaternions)
+        self._com(value, velocity, acceleration)
+        self._pose(value, velocity, acceleration)
+        self._pelvis(spin[6:9], spin_rate[6:9], quaternions[8:12])
+        self._angular_momentum(velocity, spin[6:9])
+        return desired
+
+    def _ski(
+        self,
+        ski: int,
+        value: np.ndarray,
+        velocity: np.ndarray,
+        acceleration: np.ndarray,
+        spin: np.ndarray,
+        spin_rate: np.ndarray,
+        quaternions: list[float],
+    ) -> None:
+        dynamics, gains, desired = self.dynamics, self.gains, self.desired
+        start = self._columns["ski_position"].start + 3 * ski
+        place, turn = slice(start, start + 3), slice(3 * ski, 3 * ski + 3)
+        offset, rotation_error = desired.ski_offset[ski], desired.ski_turn[ski]
+        np.subtract(value[place], dynamics.ski_position(ski), out=offset)
+        current = dynamics.xquat[dynamics.model.ski_body[ski]].tolist()
+        rotation_error[:] = _rotation_error(quaternions[4 * ski : 4 * ski + 4], current)
+        moving = dynamics.ski_velocity[ski]
+        linear = gains.ski.kp * offset + gains.ski.kd * (velocity[place] - moving[:3]) + acceleration[place]
+        axes = desired.ski_axes[ski]
+        axes[:] = dynamics.ski_rotation(ski)
+        error, slip = rotation_error @ axes, (spin[turn] - moving[3:]) @ axes
+        desired.ski[ski, :3] = linear
+        desired.ski[ski, 3:] = gains.ski.kp * error + gains.ski.kd * slip + spin_rate[turn] @ axes
+        desired.ski[ski, 3] += (gains.edging.kp - gains.ski.kp) * error[0] + (gains.edging.kd - gains.ski.kd) * slip[0]
+
+    def _com(self, value: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> None:
+        columns, dynamics, gain, desired = self._columns, self.dynamics, self.gains.com, self.desired
+        com = columns["com"]
+        desired.com_axes[0], desired.com_axes[1] = value[columns["left"]], value[columns["normal"]]
+        np.subtract(value[com], dynamics.com, out=desired.com_offset)
+        wanted = gain.kp * desired.com_offset + gain.kd * (velocity[com] - dynamics.com_velocity) + acceleration[com]
+        np.dot(desired.com_axes, wanted, out=desired.com)
+
+    def _pose(self, value: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> None:
+        columns, dynamics, gain = self._columns["joints"], self.dynamics, self.gains.pose
+        error = value[columns] - dynamics.qpos[self._joint_address]
+        self.desired.joints[:] = (
+            gain.kp * error + gain.kd * (velocity[columns] - dynamics.velocity[6:]) + acceleration[columns]
+        )
+
+    def _pelvis(self, spin: np.ndarray, spin_rate: np.ndarray, quaternion: list[float]) -> None:
+        dynamics, gain = self.dynamics, self.gains.pelvis
+        error = np.array(_rotation_error(quaternion, dynamics.xquat[1].tolist()))
+        rotation = dynamics.root_rotation
+        # the root's angular velocity and acceleration are in its own axes
+        self.desired.pelvis[:] = (
+            (gain.kp * error + gain.kd * spin + spin_rate) @ rotation - gain.kd * dynamics.velocity[3:6]
+        )
+
+    def _angular_momentum(self, velocity: np.ndarray, spin: np.ndarray) -> None:
+        dynamics, planned = self.dynamics, self._reference_velocity
+        planned[:3] = dynamics.velocity[:3]
+        planned[3:6] = spin @ dynamics.root_rotation
+        planned[6:] = velocity[self._columns["joints"]]
+        wanted = dynamics.momentum_matrix @ (planned - dynamics.velocity)
+        self.desired.angular_momentum_rate[:] = self.gains.angular_momentum.kd * wanted
+
+
+def _rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:
+    """Return the world rotation vector [rad] that turns `current` into `target` (quaternions, `target` unnormalised)."""
+    tw, tx, ty, tz = target
+    cw, cx, cy, cz = current
+    w = tw * cw + tx * cx + ty * cy + tz * cz
+    x = -tw * cx + tx * cw - ty * cz + tz * cy
+    y = -tw * cy + tx * cz + ty * cw - tz * cx
+    z = -tw * cz - tx * cy + ty * cx + tz * cw
+    sine = math.sqrt(x * x + y * y + z * z)
+    if w < 0.0:
+        w, x, y, z = -w, -x, -y, -z
+    factor = 2.0 * math.atan2(sine, w) / sine if sine > 1e-9 else 2.0 / w
+    return factor * x, factor * y, factor * z

@@ -1,0 +1,15 @@
+"""Courses: what the animator asks for, turned into a track on the terrain."""
+
+from __future__ import annotations
+
+from ..spec import RunSpec
+from ..terrain import Terrain
+from .track import LEFT, RIGHT, TRANSITION, Track
+from .turns import build_turn_track
+
+__all__ = ["LEFT", "RIGHT", "TRANSITION", "Track", "build_track"]
+
+
+def build_track(spec: RunSpec, terrain: Terrain) -> Track:
+    """Return the track of `spec.course` on `terrain`; raises `PlanInfeasible` where it cannot be skied."""
+    return build_turn_track(spec, terrain)

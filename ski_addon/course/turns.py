@@ -1,0 +1,179 @@
+"""Linked turns given by durations and a radius [SG19 sec. 4.2, Algorithm 1 with its signs mended].
+
+Algorithm 1 accelerates away from the turn as printed; here the curvature itself is prescribed over time, positive to
+the left, and speed, heading and position follow by integration with friction and drag.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import PlanInfeasible
+from ..frames import normalized
+from ..snow import Snow
+from ..spec import CourseSpec, RunSpec
+from ..terrain import Terrain
+from .track import LEFT, RIGHT, TRANSITION, Track
+
+SAMPLE_TIME = 0.005
+"""Planned time between neighbouring places of a track [s]."""
+SLOWEST = 0.15
+"""A skier slower than this [m/s] has stopped."""
+
+
+@dataclass(frozen=True)
+class TurnSchedule:
+    """Curvature over time: knots at `time` (k,) [s] with the `curvature` (k,) [1/m] held or eased to between them.
+
+    Knots come in pairs: hold, ease, hold, ease. `phase` and `turn` (k - 1,) label the intervals.
+    """
+
+    time: np.ndarray
+    curvature: np.ndarray
+    phase: np.ndarray
+    turn: np.ndarray
+
+    def curvature_at(self, time: np.ndarray) -> np.ndarray:
+        """Return the curvature [1/m] at `time` (any shape) [s], eased by half a cosine between knots [SG19 Eq. 8]."""
+        index = self._interval(time)
+        begin, end = self.time[index], self.time[index + 1]
+        x = np.clip((time - begin) / (end - begin), 0.0, 1.0)
+        ease = 0.5 - 0.5 * np.cos(np.pi * x)
+        return self.curvature[index] + (self.curvature[index + 1] - self.curvature[index]) * ease
+
+    def labels_at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the phase label and the turn's number at `time`."""
+        index = self._interval(time)
+        return self.phase[index], self.turn[index]
+
+    def _interval(self, time: np.ndarray) -> np.ndarray:
+        return np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
+
+
+def turn_schedule(course: CourseSpec) -> TurnSchedule:
+    """Return the curvature schedule of `course`."""
+    side = LEFT if course.first_turn == "left" else RIGHT
+    durations: list[float] = []
+    curvature = [0.0] if course.entry == "straight" else [side / course.turn_radius]
+    phase: list[int] = []
+    turn: list[int] = []
+
+    def add(duration: float, ends_at: float, label: int, number: int) -> None:
+        durations.append(duration)
+        curvature.append(ends_at)
+        phase.append(label)
+        turn.append(number)
+
+    if course.entry == "straight":
+        add(0.5 * course.transition_duration, side / course.turn_radius, TRANSITION, 1)
+    for number in range(1, course.turn_count + 1):
+        bend = side / course.turn_radius
+        first_half = number == 1 and course.half_first_turn
+        add(course.turn_duration * (0.5 if first_half else 1.0), bend, side, number)
+        if number < course.turn_count:
+            add(course.transition_duration, -bend, TRANSITION, number)
+        elif course.entry == "straight":
+            add(0.5 * course.transition_duration, 0.0, TRANSITION, number)
+            add(0.5 * course.transition_duration, 0.0, TRANSITION, number)
+        side = -side
+    time = np.concatenate(([0.0], np.cumsum(durations)))
+    return TurnSchedule(time, np.array(curvature), np.array(phase, dtype=np.int8), np.array(turn))
+
+
+def build_turn_track(spec: RunSpec, terrain: Terrain) -> Track:
+    """Return the track of linked turns on a plane slope.
+
+    Unless the first turn is a half one, the run starts turned away from the fall line so that the middle of the first
+    turn heads down it; otherwise the whole track would drift to one side.
+    Raises `PlanInfeasible` when friction stops the skier.
+    """
+    schedule = turn_schedule(spec.course)
+    snow = Snow.of(spec.snow, spec.skier)
+    normal = terrain.normal(0.0, 0.0)
+    motion = _integrate(schedule, snow, spec.course.start_speed, float(normal[0]), float(normal[2]))
+    heading0 = _start_heading(schedule, motion, spec.course)
+    if heading0:
+        motion = _integrate(schedule, snow, spec.course.start_speed, float(normal[0]), float(normal[2]), heading0)
+    return _track(schedule, motion, terrain, spec.course.start_speed)
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Samples over `time` (n,): `arc` [m], `speed`, `heading` [rad], and `down`, `left` [m] within the surface."""
+
+    time: np.ndarray
+    arc: np.ndarray
+    speed: np.ndarray
+    heading: np.ndarray
+    down: np.ndarray
+    left: np.ndarray
+
+
+def _integrate(
+    schedule: TurnSchedule, snow: Snow, speed: float, steepness: float, normal: float, heading: float = 0.0
+) -> _Motion:
+    """Integrate speed, heading and position by classical Runge-Kutta steps; `steepness`, `normal` are sin, cos."""
+    end = float(schedule.time[-1])
+    count = max(int(np.ceil(end / SAMPLE_TIME)), 20)
+    step = end / count
+    time = np.linspace(0.0, end, count + 1)
+    bend = schedule.curvature_at(np.linspace(0.0, end, 2 * count + 1))
+    gravity = 9.81
+
+    def rate(state: np.ndarray, curvature: float) -> np.ndarray:
+        v, psi = state[1], state[2]
+        c, s = np.cos(psi), np.sin(psi)
+        glide = snow.glide_acceleration(gravity * steepness * c, gravity * normal, v)
+        return np.array((v, glide, curvature * v, v * c, v * s))
+
+    states = np.empty((count + 1, 5))
+    states[0] = (0.0, speed, heading, 0.0, 0.0)
+    for i in range(count):
+        x = states[i]
+        k1 = rate(x, bend[2 * i])
+        k2 = rate(x + 0.5 * step * k1, bend[2 * i + 1])
+        k3 = rate(x + 0.5 * step * k2, bend[2 * i + 1])
+        k4 = rate(x + step * k3, bend[2 * i + 2])
+        states[i + 1] = x + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        if states[i + 1, 1] < SLOWEST:
+            raise _stopped(time[i + 1], float(x[0]), int(schedule.labels_at(time[i + 1])[1]))
+    return _Motion(time, *states.T)
+
+
+def _stopped(time: float, arc: float, turn: int) -> PlanInfeasible:
+    return PlanInfeasible(
+        f"turn {turn} ({arc:.1f} m, {time:.1f} s)",
+        None,
+        "friction stops the skier there: make the slope steeper, lower snow.friction, start faster or turn less",
+    )
+
+
+def _start_heading(schedule: TurnSchedule, motion: _Motion, course: CourseSpec) -> float:
+    """Return the heading [rad] at the start that points the middle of the first turn down the fall line."""
+    if course.half_first_turn and course.entry == "turn":
+        return 0.0
+    in_first = np.flatnonzero(schedule.phase != TRANSITION)[0]
+    begin, end = schedule.time[in_first], schedule.time[in_first + 1]
+    middle = begin if course.half_first_turn else 0.5 * (begin + end)
+    return -float(np.interp(middle, motion.time, motion.heading))
+
+
+def _track(schedule: TurnSchedule, motion: _Motion, terrain: Terrain, start_speed: float) -> Track:
+    normal = terrain.normal(0.0, 0.0)
+    down_axis = normalized(np.array([normal[2], 0.0, -normal[0]]))
+    left_axis = np.array([0.0, 1.0, 0.0])
+    position = motion.down[:, None] * down_axis + motion.left[:, None] * left_axis
+    tangent = np.cos(motion.heading)[:, None] * down_axis + np.sin(motion.heading)[:, None] * left_axis
+    phase, turn = schedule.labels_at(motion.time)
+    return Track(
+        arc_length=motion.arc.copy(),
+        position=position,
+        tangent=tangent,
+        surface_normal=np.broadcast_to(normal, position.shape).copy(),
+        curvature=schedule.curvature_at(motion.time),
+        phase=phase,
+        turn=turn,
+        start_speed=start_speed,
+    )

@@ -1,0 +1,45 @@
+"""The one flow, from a run document to a recording: each arrow of the design as one call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .body import SkierModel, build_skier_model
+from .course import Track, build_track
+from .planning import MotionPlan, plan_motion
+from .simulation import Progress, Recording, Simulation, simulate
+from .spec import RunSpec
+from .terrain import Terrain, build_terrain
+
+
+@dataclass(frozen=True)
+class Planned:
+    """Everything that is known before the physics runs."""
+
+    spec: RunSpec
+    terrain: Terrain
+    track: Track
+    model: SkierModel
+    plan: MotionPlan
+
+
+def make_plan(spec: RunSpec) -> Planned:
+    """Validate `spec` and plan its run.
+
+    Raises `SpecError` for a bad document and `PlanInfeasible` for a track that cannot be skied.
+    """
+    spec.validate()
+    terrain = build_terrain(spec.slope)
+    track = build_track(spec, terrain)
+    model = build_skier_model(spec.skier)
+    return Planned(spec, terrain, track, model, plan_motion(spec, track, terrain, model))
+
+
+def start_simulation(planned: Planned) -> Simulation:
+    """Return the simulation of a plan at its first step, to be advanced by the caller."""
+    return Simulation(planned.spec, planned.plan, planned.model, planned.terrain)
+
+
+def run_simulation(planned: Planned, progress: Progress | None = None) -> tuple[Recording, list[float]]:
+    """Simulate a plan to its end; return the recording and each step's wall time [s]."""
+    return simulate(planned.spec, planned.plan, planned.model, planned.terrain, progress)

@@ -1,0 +1,122 @@
+"""Poses along the plan: angulated upper body and legs by inverse kinematics [SG19 sec. 4.4].
+
+The pelvis leans by (1 + beta_a) of the inclination [SG19 Eq. 15]; spine and head right themselves a little more, in
+proportion to the angulation. The skis are edged by the inclination; where the boots' side play cannot take the
+difference between leg and ski, the ski's edge follows the leg, which is how angulation adds edge on a real skier.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body import Skeleton, centre_of_mass, forward_kinematics
+from ..body.leg_ik import LegAngles, ankle_from_ski, solve_leg
+from ..body.skeleton import SIDES
+from ..frames import matrix_from_columns, quaternion_from_matrix, rotation_about
+from ..snow import edge_lift
+from .stance import PELVIS_PITCH, Stance
+
+BOOT_PLAY = np.deg2rad(4.0)
+"""How much of the boot's 5 degrees of side play the plan uses; approached smoothly."""
+SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
+"""Lean taken back by spine and head, in units of the pelvis's angulation angle."""
+
+
+@dataclass(frozen=True)
+class PlannedPoses:
+    """Poses of a plan: `qpos` (n, nq), `edge_angle` (n, 2) [rad], ski centres `ski_position` (n, 2, 3) [m, world],
+    `ski_rotation` (n, 2, 3, 3) and how far [m] the legs are out of reach, `reach_error` (n, 2).
+    """
+
+    qpos: np.ndarray
+    edge_angle: np.ndarray
+    ski_position: np.ndarray
+    ski_rotation: np.ndarray
+    reach_error: np.ndarray
+
+
+def plan_poses(
+    skeleton: Skeleton,
+    stance: Stance,
+    world_from_track: np.ndarray,
+    position: np.ndarray,
+    com: np.ndarray,
+    inclination: np.ndarray,
+    angulation: np.ndarray,
+) -> PlannedPoses:
+    """Return poses whose skis lie on the track and whose centre of mass is `com` (n, 3) [m, world].
+
+    `world_from_track` (n, 3, 3) has columns tangent, left, normal; `position` (n, 3) is the middle between the skis;
+    `inclination` (n,) [rad] is positive to the left and `angulation` (n,) is beta_a, -1..0.
+    """
+    count = len(position)
+    qpos = np.repeat(stance.qpos[None], count, axis=0)
+    _lean_upper_body(skeleton, qpos, world_from_track, inclination, angulation)
+    qpos[:, :3] += com - _com(skeleton, qpos)
+    edge = np.repeat(inclination[:, None], 2, axis=1)
+    for _ in range(25):
+        ski_position, ski_rotation = ski_frames(skeleton, world_from_track, position, edge)
+        legs = _solve_legs(skeleton, qpos, ski_position, ski_rotation)
+        moved = com - _com(skeleton, qpos)
+        qpos[:, :3] += moved
+        misfit = edge - inclination[:, None] + np.stack([leg.foot_x + leg.edge_error for leg in legs], axis=1)
+        turned = inclination[:, None] + misfit - BOOT_PLAY * np.tanh(misfit / BOOT_PLAY) - edge
+        edge = edge + turned
+        if np.max(np.abs(moved)) < 1e-9 and np.max(np.abs(turned)) < 1e-9:
+            break
+    reach_error = np.stack([leg.length_error for leg in legs], axis=1)
+    return PlannedPoses(qpos, edge, ski_position, ski_rotation, reach_error)
+
+
+def ski_frames(
+    skeleton: Skeleton, world_from_track: np.ndarray, position: np.ndarray, edge_angle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the skis' centres (n, 2, 3) [m, world] and rotations (n, 2, 3, 3) at `edge_angle` (n, 2) [rad].
+
+    The skis stand apart within the snow surface; each is raised so that its lower edge, not its middle, is on it.
+    """
+    rotation = world_from_track[:, None] @ rotation_about("x", -edge_angle)
+    half = 0.5 * skeleton.stance_width * np.array([1.0, -1.0])
+    sideways = half[None, :, None] * world_from_track[:, None, :, 1]
+    lift = edge_lift(edge_angle, skeleton.ski_width)[..., None] * world_from_track[:, None, :, 2]
+    return position[:, None] + sideways + lift, rotation
+
+
+def _lean_upper_body(
+    skeleton: Skeleton, qpos: np.ndarray, frames: np.ndarray, inclination: np.ndarray, angulation: np.ndarray
+) -> None:
+    pelvis_lean = (1.0 + angulation) * inclination
+    pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("y", np.float64(PELVIS_PITCH))
+    qpos[:, 3:7] = quaternion_from_matrix(pelvis)
+    for hinge, share in SPINE_SHARE.items():
+        qpos[:, skeleton.qpos_of(hinge)] += share * -angulation * inclination
+
+
+def _solve_legs(
+    skeleton: Skeleton, qpos: np.ndarray, ski_position: np.ndarray, ski_rotation: np.ndarray
+) -> list[LegAngles]:
+    """Solve both legs in place in `qpos` and return their angles."""
+    from ..frames import matrix_from_quaternion
+
+    pelvis = matrix_from_quaternion(qpos[:, 3:7])
+    legs = []
+    for i, side in enumerate(SIDES):
+        hip = qpos[:, :3] + pelvis @ skeleton.offset[skeleton.body(f"thigh.{side}")]
+        ankle = ankle_from_ski(skeleton, ski_position[:, i], ski_rotation[:, i])
+        leg = solve_leg(skeleton, hip, pelvis, ankle, ski_rotation[:, i])
+        values = (*leg.thigh.T, leg.shank, leg.foot_y, leg.foot_x)
+        for hinge, value in zip(("thigh_y", "thigh_x", "thigh_z", "shank_y", "foot_y", "foot_x"), values, strict=True):
+            qpos[:, skeleton.qpos_of(f"{hinge}.{side}")] = value
+        legs.append(leg)
+    return legs
+
+
+def _com(skeleton: Skeleton, qpos: np.ndarray) -> np.ndarray:
+    return centre_of_mass(skeleton, *forward_kinematics(skeleton, qpos))
+
+
+def track_frames(tangent: np.ndarray, surface_normal: np.ndarray) -> np.ndarray:
+    """Return world_from_track (n, 3, 3) with columns tangent, left, surface normal."""
+    return matrix_from_columns(tangent, np.cross(surface_normal, tangent), surface_normal)

@@ -1,0 +1,99 @@
+"""The skier's one static pose [SG19 Fig. 1a]: knees bent, trunk forward, hands in front, balanced over the skis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body import Skeleton, centre_of_mass, forward_kinematics
+from ..body.leg_ik import ankle_from_ski, solve_leg
+from ..body.skeleton import SIDES
+from ..frames import quaternion_from_matrix, rotation_about
+
+PELVIS_PITCH = np.deg2rad(20.0)
+"""Forward tilt of the pelvis in the stance."""
+UPPER_BODY_DEG = {
+    "abdomen_y": 14.0,
+    "chest_y": 14.0,
+    "head_y": -32.0,
+    "upper_arm_y": -42.0,
+    "upper_arm_x": 24.0,
+    "upper_arm_z": -12.0,
+    "forearm_y": -62.0,
+    "hand_y": 0.0,
+}
+"""Hinge angles [deg] of the upper body, left side; x and z rotations mirror on the right."""
+
+
+@dataclass(frozen=True)
+class Stance:
+    """The balanced pose `qpos` (nq,) over skis side by side on flat ground at the origin, its centre of mass's
+    `height` [m] over the snow, and `extension` [m], how much higher the legs can push it.
+    """
+
+    qpos: np.ndarray
+    height: float
+    extension: float
+
+
+def build_stance(skeleton: Skeleton, knee_bend: float) -> Stance:
+    """Return the stance with knees bent by `knee_bend` [rad] and the centre of mass over the middle of the skis."""
+    from scipy.optimize import brentq
+
+    thigh, shank = skeleton.lengths["thigh"], skeleton.lengths["shank"]
+    reach = np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(knee_bend))
+
+    def forward(angle: float) -> float:
+        return float(_com(skeleton, _pose(skeleton, reach, angle))[0])
+
+    angle = brentq(forward, -0.9, 0.9, xtol=1e-12)
+    qpos = _pose(skeleton, reach, angle)
+    straight = np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(np.deg2rad(15.0)))
+    return Stance(qpos, float(_com(skeleton, qpos)[2]), float((straight - reach) * np.cos(angle)))
+
+
+def upper_body_angles(skeleton: Skeleton) -> dict[int, float]:
+    """Return {qpos address: angle [rad]} of the stance's upper body."""
+    angles = {}
+    for hinge, degrees in UPPER_BODY_DEG.items():
+        if hinge.split("_")[0] in ("abdomen", "chest", "head"):
+            angles[skeleton.qpos_of(hinge)] = np.deg2rad(degrees)
+            continue
+        for side in SIDES:
+            sign = -1.0 if side == "R" and hinge[-1] in "xz" else 1.0
+            angles[skeleton.qpos_of(f"{hinge}.{side}")] = sign * np.deg2rad(degrees)
+    return angles
+
+
+def _pose(skeleton: Skeleton, reach: float, angle: float) -> np.ndarray:
+    """Return qpos with the hips `reach` [m] from the ankles, the leg line tilted forward by `angle` [rad]."""
+    qpos = np.zeros((1, skeleton.nq))
+    half = 0.5 * skeleton.stance_width
+    pelvis = rotation_about("y", np.array([PELVIS_PITCH]))
+    ski_rotation = np.eye(3)[None]
+    ankle = ankle_from_ski(skeleton, np.array([[0.0, half, 0.0]]), ski_rotation)
+    sideways = half - skeleton.hip_half_width
+    up = np.sqrt(reach**2 - sideways**2)
+    hip = ankle + np.array([up * np.sin(angle), -sideways, up * np.cos(angle)])
+    hip_in_pelvis = skeleton.offset[skeleton.body("thigh.L")]
+    qpos[:, :3] = hip - pelvis @ hip_in_pelvis
+    qpos[:, 3:7] = quaternion_from_matrix(pelvis)
+    for address, value in upper_body_angles(skeleton).items():
+        qpos[:, address] = value
+    legs = solve_leg(skeleton, hip, pelvis, ankle, ski_rotation)
+    for side, sign in (("L", 1.0), ("R", -1.0)):
+        for name, value in (
+            ("thigh_y", legs.thigh[:, 0]),
+            ("thigh_x", sign * legs.thigh[:, 1]),
+            ("thigh_z", sign * legs.thigh[:, 2]),
+            ("shank_y", legs.shank),
+            ("foot_y", legs.foot_y),
+            ("foot_x", sign * legs.foot_x),
+        ):
+            qpos[:, skeleton.qpos_of(f"{name}.{side}")] = value
+    return qpos[0]
+
+
+def _com(skeleton: Skeleton, qpos: np.ndarray) -> np.ndarray:
+    return centre_of_mass(skeleton, *forward_kinematics(skeleton, qpos[None]))[0]

@@ -1,0 +1,98 @@
+"""Recognising a fall: what went wrong, where, and why."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from ..control import Command, Dynamics
+from ..terrain import Terrain
+
+TIPPED_COSINE = 0.2
+"""The pelvis has tipped over when its up axis and the snow's normal have a cosine below this."""
+LOWEST_HEAD = 0.23
+"""Height of the neck over the snow, in units of stature, below which the skier lies."""
+LOWEST_COM = 0.18
+"""Height of the centre of mass over the snow, in units of stature, below which the skier sits."""
+SKI_LEFT_TRACK = 0.4
+"""Error of a ski corner [m] beyond which a ski has left its track."""
+STALLED = 0.05
+"""Progress along the track [m/s] below which the skier has come to a stop."""
+
+
+@dataclass(frozen=True)
+class Fall:
+    """Why a run ended: `status` "fell" or "diverged", `time` [s], `what` failed, `where` [m along the track], `why`."""
+
+    status: str
+    time: float
+    what: str
+    where: float
+    why: str
+
+    def detail(self) -> dict[str, float | str]:
+        """Return the fall without its status, for a recording's header."""
+        values = asdict(self)
+        values.pop("status")
+        return values
+
+
+class FallWatch:
+    """Watches a run for a fall and remembers what the muscles and the solver did before it."""
+
+    def __init__(self, dynamics: Dynamics, terrain: Terrain) -> None:
+        """Watch the skier of `dynamics` on `terrain`."""
+        self._dynamics, self._terrain = dynamics, terrain
+        skeleton = dynamics.model.skeleton
+        self._height = skeleton.height
+        self._head = skeleton.body("head") + 1
+        self._hinges = [skeleton.joint_names[i] for i in skeleton.actuated]
+        self._saturated_since: float | None = None
+        self._saturated_hinge = ""
+
+    def note_torques(self, time: float, ratio: np.ndarray) -> None:
+        """Remember since when a hinge has been at its torque limit; `ratio` (31,) is of the limit."""
+        strongest = int(np.argmax(ratio))
+        if ratio[strongest] < 0.999:
+            self._saturated_since = None
+        elif self._saturated_since is None:
+            self._saturated_since, self._saturated_hinge = time, self._hinges[strongest]
+
+    def check(self, time: float, progress: float, command: Command, ski_error: float) -> Fall | None:
+        """Return the fall that has happened at this state, or None."""
+        dynamics = self._dynamics
+        if not (np.all(np.isfinite(dynamics.qpos)) and np.all(np.isfinite(dynamics.qvel))):
+            return Fall("diverged", time, "the state is no longer a number", progress, self._why(time, command))
+        normal = self._terrain.normal(dynamics.com[0], dynamics.com[1])
+        what = self._what(normal, command, ski_error)
+        return None if what is None else Fall("fell", time, what, progress, self._why(time, command))
+
+    def _what(self, normal: np.ndarray, command: Command, ski_error: float) -> str | None:
+        dynamics, height = self._dynamics, self._height
+        head = self._above_snow(dynamics.body_position(self._head), normal)
+        com = self._above_snow(dynamics.com, normal)
+        if float(dynamics.root_rotation[:, 2] @ normal) < TIPPED_COSINE:
+            return "the pelvis tipped over"
+        if head < LOWEST_HEAD * height:
+            return f"the head came down to {head:.2f} m over the snow"
+        if com < LOWEST_COM * height:
+            return f"the body came down to {com:.2f} m over the snow"
+        if ski_error > SKI_LEFT_TRACK:
+            return f"a ski left its track by {ski_error:.2f} m"
+        if command.rate < STALLED:
+            return "the skier came to a stop"
+        return None
+
+    def _above_snow(self, point: np.ndarray, normal: np.ndarray) -> float:
+        return float((point[2] - self._terrain.height(point[0], point[1])) * normal[2])
+
+    def _why(self, time: float, command: Command) -> str:
+        if command.rate < STALLED:
+            return "friction and slope no longer carry it forward"
+        if self._saturated_since is not None:
+            held = time - self._saturated_since
+            return f"{self._saturated_hinge} had been at its torque limit for {held:.2f} s"
+        if command.solution.status != 0:
+            return "no torques and snow forces were found that follow the plan"
+        return "the centre of mass left the range the skis can support"

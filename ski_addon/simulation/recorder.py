@@ -1,0 +1,80 @@
+"""Collects a run step by step, in arrays that grow by doubling."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .recording import Recording
+
+SHAPES: dict[str, tuple[int, ...]] = {
+    "time": (),
+    "arc_length": (),
+    "speed": (),
+    "qpos": (42,),
+    "qvel": (41,),
+    "tau": (31,),
+    "snow_force": (2, 3),
+    "snow_edge_force": (2, 2),
+    "snow_edge_side": (2, 2),
+    "inclination": (),
+    "edge_angle": (2,),
+    "edge_angle_reference": (2,),
+    "com": (3,),
+    "com_reference": (3,),
+    "ski_error": (),
+    "com_error": (),
+    "turn_phase": (),
+    "curvature": (),
+    "track_position": (3,),
+    "track_tangent": (3,),
+    "surface_normal": (3,),
+    "root_residual": (),
+    "torque_ratio": (31,),
+    "joint_margin": (),
+}
+"""Real numbers recorded each step, and their shapes."""
+COUNTS = {
+    "phase": np.int8,
+    "turn": np.int32,
+    "solver_iterations": np.int32,
+    "solver_status": np.int8,
+    "solver_attempts": np.int8,
+}
+"""Whole numbers recorded each step, and their types."""
+
+
+class Recorder:
+    """Append-only store of steps; `add` takes one value for every name of `SHAPES` and `COUNTS`."""
+
+    def __init__(self, expected: int) -> None:
+        """Reserve room for about `expected` steps."""
+        widths = [int(np.prod(shape, dtype=int)) for shape in SHAPES.values()]
+        edges = np.concatenate(([0], np.cumsum(widths)))
+        self._slices = [slice(int(a), int(b)) for a, b in zip(edges, edges[1:], strict=False)]
+        self._reals = np.empty((max(expected, 64), int(edges[-1])))
+        self._counts = np.empty((max(expected, 64), len(COUNTS)), dtype=np.int32)
+        self.count = 0
+
+    def add(self, reals: tuple[Any, ...], counts: tuple[int, ...]) -> None:
+        """Append one step: values in the order of `SHAPES` and of `COUNTS`."""
+        if self.count == len(self._reals):
+            self._reals = np.concatenate((self._reals, np.empty_like(self._reals)))
+            self._counts = np.concatenate((self._counts, np.empty_like(self._counts)))
+        row = self._reals[self.count]
+        for place, value in zip(self._slices, reals, strict=True):
+            row[place] = value if np.isscalar(value) else value.reshape(-1)
+        self._counts[self.count] = counts
+        self.count += 1
+
+    def column(self, name: str) -> np.ndarray:
+        """Return what has been recorded under `name`, (count, ...)."""
+        if name in COUNTS:
+            return self._counts[: self.count, list(COUNTS).index(name)].astype(COUNTS[name])
+        place = self._slices[list(SHAPES).index(name)]
+        return self._reals[: self.count, place].reshape(self.count, *SHAPES[name]).copy()
+
+    def recording(self, header: dict[str, Any]) -> Recording:
+        """Return everything recorded so far under `header`."""
+        return Recording(header, **{name: self.column(name) for name in (*SHAPES, *COUNTS)})

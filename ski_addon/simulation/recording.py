@@ -1,0 +1,151 @@
+"""The recording of a run: what happened at every step, as plain arrays in one `.npz` file.
+
+Nothing in the file is pickled and its bytes depend only on its contents: the archive's time stamps are fixed.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..atomic import atomic_path
+from ..errors import RecordingError
+
+FORMAT = "ski-addon-recording"
+FORMAT_VERSION = 1
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+LARGEST_BYTES = 16 * 2**30
+"""A recording that unpacks to more than this is not read."""
+
+
+@dataclass(frozen=True)
+class Recording:
+    """States, forces and errors of a run at n steps; arrays are read-only.
+
+    `header`: dict with `spec` (the run document as TOML), `spec_hash`, `model_hash`, `versions`, `seed`, `status`
+    ("finished", "fell", "cancelled", "diverged"), `status_detail` ({time, what, where, why} or {}), `body_names`,
+    `joint_names`, `actuated_joint_names`, `time_step`, `gravity`, `mass`.
+    Arrays: `time` [s], `arc_length` of the skier's place [m], `speed` of the centre of mass [m/s]; `qpos` (n, 42),
+    `qvel` (n, 41), `tau` (n, 31) [N m]; `snow_force` (n, 2, 3) on each ski [N, world]; `snow_edge_force` (n, 2, 2)
+    normal force by ski and edge [N], `snow_edge_side` (n, 2, 2) side force, positive to the left [N];
+    `inclination` (n,), `edge_angle` (n, 2) [rad] as they were, `edge_angle_reference` (n, 2); `com`, `com_reference`
+    (n, 3) [m, world]; `ski_error` (n,) largest error of a ski corner [m], `com_error` (n,) [m]; `turn_phase` (n,),
+    `phase` (n,) int8, `turn` (n,) int32, `curvature` (n,) [1/m]; `track_position`, `track_tangent`, `surface_normal`
+    (n, 3); `solver_iterations`, `solver_status` (0: converged), `solver_attempts`; `root_residual` [N or N m];
+    `torque_ratio` (n, 31) of the human limit, 0..1; `joint_margin` (n,) least distance of a hinge from its limit [rad].
+    """
+
+    header: dict[str, Any]
+    time: np.ndarray
+    arc_length: np.ndarray
+    speed: np.ndarray
+    qpos: np.ndarray
+    qvel: np.ndarray
+    tau: np.ndarray
+    snow_force: np.ndarray
+    snow_edge_force: np.ndarray
+    snow_edge_side: np.ndarray
+    inclination: np.ndarray
+    edge_angle: np.ndarray
+    edge_angle_reference: np.ndarray
+    com: np.ndarray
+    com_reference: np.ndarray
+    ski_error: np.ndarray
+    com_error: np.ndarray
+    turn_phase: np.ndarray
+    phase: np.ndarray
+    turn: np.ndarray
+    curvature: np.ndarray
+    track_position: np.ndarray
+    track_tangent: np.ndarray
+    surface_normal: np.ndarray
+    solver_iterations: np.ndarray
+    solver_status: np.ndarray
+    solver_attempts: np.ndarray
+    root_residual: np.ndarray
+    torque_ratio: np.ndarray
+    joint_margin: np.ndarray
+
+    def __post_init__(self) -> None:
+        for name in array_names():
+            getattr(self, name).setflags(write=False)
+
+    @property
+    def status(self) -> str:
+        """How the run ended."""
+        return str(self.header["status"])
+
+    @property
+    def duration(self) -> float:
+        """Simulated time [s]."""
+        return float(self.time[-1] + self.header["time_step"]) if len(self.time) else 0.0
+
+    def save(self, path: str | Path) -> Path:
+        """Write the recording to `path`, whole or not at all; raises `OutputError` when it cannot be written."""
+        target = Path(path)
+        with atomic_path(target) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_STORED) as archive:
+            _write_member(archive, "header", np.frombuffer(self._header_bytes(), dtype=np.uint8))
+            for name in array_names():
+                _write_member(archive, name, np.ascontiguousarray(getattr(self, name)))
+        return target
+
+    def _header_bytes(self) -> bytes:
+        document = {"format": FORMAT, "format_version": FORMAT_VERSION, **self.header}
+        return json.dumps(document, sort_keys=True, ensure_ascii=False).encode()
+
+    @classmethod
+    def load(cls, path: str | Path) -> Recording:
+        """Read a recording; raises `RecordingError` when the file is missing, truncated or something else."""
+        source = Path(path)
+        if not source.is_file():
+            raise RecordingError(source, "there is no such file")
+        try:
+            with zipfile.ZipFile(source) as archive:
+                if sum(info.file_size for info in archive.infolist()) > LARGEST_BYTES:
+                    raise RecordingError(source, f"it would unpack to more than {LARGEST_BYTES >> 30} GiB")
+            with np.load(source, allow_pickle=False) as members:
+                header = _read_header(source, members)
+                arrays = {name: members[name] for name in array_names()}
+        except KeyError as missing:
+            raise RecordingError(source, f"it lacks {missing}; simulate again") from None
+        except (OSError, ValueError, EOFError, zipfile.BadZipFile) as problem:
+            raise RecordingError(source, f"it is truncated or not a recording ({problem})") from None
+        _check_shapes(source, arrays)
+        return cls(header, **arrays)
+
+
+def array_names() -> list[str]:
+    """Return the names of a recording's arrays."""
+    return [entry.name for entry in fields(Recording) if entry.name != "header"]
+
+
+def _write_member(archive: zipfile.ZipFile, name: str, array: np.ndarray) -> None:
+    """Write one array as `np.savez` would, with a fixed time stamp."""
+    info = zipfile.ZipInfo(f"{name}.npy", date_time=_EPOCH)
+    with archive.open(info, "w", force_zip64=True) as member:
+        np.lib.format.write_array(member, array, allow_pickle=False)
+
+
+def _read_header(source: Path, members: Any) -> dict[str, Any]:
+    document = json.loads(io.BytesIO(members["header"].tobytes()).read())
+    if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
+        raise RecordingError(source, "it is not a recording of a ski run")
+    version = document.pop("format_version", None)
+    if version != FORMAT_VERSION:
+        raise RecordingError(source, f"it has format version {version}, this version reads {FORMAT_VERSION}; simulate again")
+    return document
+
+
+def _check_shapes(source: Path, arrays: dict[str, np.ndarray]) -> None:
+    count = len(arrays["time"])
+    for name, array in arrays.items():
+        if array.ndim == 0 or len(array) != count:
+            raise RecordingError(source, f"{name} has {array.shape} entries instead of {count}; simulate again")
+        if array.dtype.kind not in "fiu":
+            raise RecordingError(source, f"{name} does not hold numbers")

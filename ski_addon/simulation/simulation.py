@@ -1,0 +1,205 @@
+"""Stepping the skier through a plan."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..body import SkierModel
+from ..body.model import GRAVITY
+from ..control import Command, Controller, Dynamics, Gains
+from ..frames import matrix_from_quaternion
+from ..planning import MotionPlan, Reference
+from ..snow import Snow
+from ..spec import RunSpec
+from ..terrain import Terrain
+from .falls import Fall, FallWatch
+from .recorder import Recorder
+from .recording import Recording
+from .versions import library_versions
+
+Progress = Callable[[float, str], "bool | None"]
+"""Called with the fraction done and a line of text; returning False cancels."""
+
+CHECK_INTERVAL = 10
+"""Steps between two looks for a fall."""
+
+
+class Simulation:
+    """A run in progress: `advance` it by steps, then take its `recording`.
+
+    The same specification on the same machine gives the same bytes: nothing depends on time or on chance.
+    """
+
+    def __init__(self, spec: RunSpec, plan: MotionPlan, model: SkierModel, terrain: Terrain) -> None:
+        """Put the skier at the start of `plan`, moving as planned."""
+        self.spec, self.plan, self.model = spec, plan, model
+        self.time_step = spec.simulation.time_step
+        self.snow = Snow.of(spec.snow, spec.skier)
+        self.reference = Reference(plan, model)
+        self.dynamics = Dynamics(model, self.snow.drag_factor)
+        self.controller = Controller(self.dynamics, self.reference, self.snow, spec.simulation.segments, Gains())
+        self.step_total = math.ceil(plan.duration / self.time_step)
+        self.step_done = 0
+        self.progress = 0.0
+        self.finished = False
+        self.fall: Fall | None = None
+        self.step_seconds: list[float] = []
+        self._watch = FallWatch(self.dynamics, terrain)
+        self._recorder = Recorder(self.step_total + 256)
+        half_length, half_width = 0.5 * model.skeleton.ski_length, 0.5 * model.skeleton.ski_width
+        self._corners = np.array(
+            [(x, y, 0.0) for x in (half_length, -half_length) for y in (half_width, -half_width)]
+        ).T.copy()
+        self._labels = (plan.phase.tolist(), plan.turn.tolist())
+        self._start()
+
+    @property
+    def fraction(self) -> float:
+        """How much of the run is done, 0..1."""
+        return min(self.progress / self.plan.length, 1.0)
+
+    @property
+    def running(self) -> bool:
+        """Whether there is more to step."""
+        return not self.finished and self.fall is None
+
+    def advance(self, step_count: int) -> bool:
+        """Make up to `step_count` steps; return True while the run goes on."""
+        for _ in range(step_count):
+            if not self.running:
+                return False
+            begin = clock.perf_counter()
+            self.step()
+            self.step_seconds.append(clock.perf_counter() - begin)
+        return self.running
+
+    def step(self) -> None:
+        """Make one step: dynamics, control, record, integrate."""
+        dynamics, now = self.dynamics, self.step_done * self.time_step
+        dynamics.update()
+        command = self.controller.step(self.progress)
+        ratio = np.maximum(command.torque / self.model.torque_upper, command.torque / self.model.torque_lower)
+        self._watch.note_torques(now, ratio)
+        ski_error = self._ski_error()
+        if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
+            self.fall = self._watch.check(now, self.progress, command, ski_error)
+            if self.fall is not None and self.fall.status == "diverged":
+                return
+        self._record(now, command, ratio, ski_error)
+        dynamics.integrate(dynamics.accelerations(command.torque, command.snow), self.time_step)
+        self.progress += command.rate * self.time_step
+        self.step_done += 1
+        self.finished = self.progress >= self.plan.length
+
+    def recording(self, status: str | None = None) -> Recording:
+        """Return the recording so far. `status` defaults to what happened: "finished", "fell", "diverged", or
+        "cancelled" for a run that was left before its end.
+        """
+        if status is None:
+            status = "finished" if self.finished else self.fall.status if self.fall else "cancelled"
+        return self._recorder.recording(self._header(status))
+
+    def _start(self) -> None:
+        """Set the planned pose and velocity at the start of the track."""
+        dynamics, model, columns = self.dynamics, self.model, self.reference.columns
+        value, slope, _ = self.reference.at(0.0)
+        speed = float(self.plan.speed[0])
+        dynamics.qpos[:] = self.plan.pose[0]
+        velocity = np.zeros(model.mujoco.nv)
+        velocity[model.actuated_dof] = slope[columns["joints"]] * speed
+        velocity[3:6] = matrix_from_quaternion(self.plan.pose[0, 3:7]).T @ value[columns["turning"]][6:9] * speed
+        dynamics.qvel[:] = velocity
+        dynamics.update()
+        velocity[:3] = slope[columns["com"]] * speed - dynamics.com_velocity
+        dynamics.qvel[:] = velocity
+
+    def _ski_error(self) -> float:
+        """Return the largest distance [m] of a ski corner from its reference."""
+        desired = self.controller.desired
+        worst = 0.0
+        for ski in range(2):
+            x, y, z = desired.ski_turn[ski].tolist()
+            turn = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+            error = desired.ski_offset[ski][:, None] + turn @ (self.dynamics.ski_rotation(ski) @ self._corners)
+            worst = max(worst, float((error * error).sum(axis=0).max()))
+        return math.sqrt(worst)
+
+    def _record(self, now: float, command: Command, ratio: np.ndarray, ski_error: float) -> None:
+        dynamics, columns, value = self.dynamics, self.reference.columns, command.sample[0]
+        desired, model = self.controller.desired, self.model
+        place = self.reference.interval(self.progress)
+        normal, left = value[columns["normal"]], value[columns["left"]]
+        over = dynamics.com - value[columns["track_position"]]
+        hinges = dynamics.qpos[model.actuated_qpos]
+        margin = min(float((hinges - model.joint_lower).min()), float((model.joint_upper - hinges).min()))
+        solution = command.solution
+        self._recorder.add(
+            (
+                now,
+                self.progress,
+                math.sqrt(dynamics.com_velocity @ dynamics.com_velocity),
+                dynamics.qpos,
+                dynamics.qvel,
+                command.torque,
+                command.ski_force,
+                command.edge_normal,
+                command.edge_side,
+                math.atan2(over @ left, over @ normal),
+                command.edge_angle,
+                value[columns["edge_angle"]],
+                dynamics.com,
+                value[columns["com"]],
+                ski_error,
+                math.sqrt(desired.com_offset @ desired.com_offset),
+                float(value[columns["turn_phase"]][0]),
+                float(value[columns["curvature"]][0]),
+                value[columns["track_position"]],
+                value[columns["tangent"]],
+                normal,
+                command.root_residual,
+                ratio,
+                margin,
+            ),
+            (self._labels[0][place], self._labels[1][place], solution.iterations, solution.status, solution.attempts),
+        )
+
+    def _header(self, status: str) -> dict[str, Any]:
+        skeleton = self.model.skeleton
+        return {
+            "spec": self.spec.to_toml(),
+            "spec_hash": self.spec.content_hash(),
+            "model_hash": self.model.model_hash,
+            "versions": library_versions(),
+            "seed": self.spec.simulation.seed,
+            "status": status,
+            "status_detail": self.fall.detail() if self.fall else {},
+            "body_names": list(skeleton.body_names),
+            "joint_names": list(skeleton.joint_names),
+            "actuated_joint_names": [skeleton.joint_names[i] for i in skeleton.actuated],
+            "time_step": self.time_step,
+            "gravity": GRAVITY.tolist(),
+            "mass": self.model.mass,
+        }
+
+
+def simulate(
+    spec: RunSpec, plan: MotionPlan, model: SkierModel, terrain: Terrain, progress: Progress | None = None
+) -> tuple[Recording, list[float]]:
+    """Simulate the whole run; return its recording and the wall time of each step [s].
+
+    `progress(fraction, text)` is called about every 0.1 s of simulated time; when it returns False the run is
+    cancelled and what is done is kept. A fall is not an error here: the recording's status tells.
+    """
+    simulation = Simulation(spec, plan, model, terrain)
+    chunk = max(int(0.1 / simulation.time_step), 1)
+    cancelled = False
+    while not cancelled and simulation.advance(chunk):
+        if progress is not None:
+            text = f"simulating {simulation.step_done * simulation.time_step:.1f} of {plan.duration:.1f} s"
+            cancelled = progress(simulation.fraction, text) is False
+    return simulation.recording(), simulation.step_seconds

@@ -1,0 +1,41 @@
+"""Where snow touches the skis: contact points along both edges, force directions, and which edges bear.
+
+Each ski has `segments` points on its left and on its right edge. A point pushes along the snow's normal, drags
+against its velocity in proportion (friction), and shears across the ski within the surface [SG19 Eq. 25-27].
+The paper switches edges at 0.016 degrees, which would chatter; here the edge that leaves the snow fades out between
+two small angles.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+FADE_FROM, FADE_TO = np.deg2rad(1.0), np.deg2rad(4.0)
+"""Edge angles [rad] between which the lifted edge stops bearing."""
+
+
+def contact_points(length: float, width: float, segments: int) -> np.ndarray:
+    """Return the contact points (2, segments, 3) [m, ski frame] at segment centres: left edge, then right edge."""
+    along = (np.arange(segments) + 0.5) * (length / segments) - 0.5 * length
+    points = np.zeros((2, segments, 3))
+    points[:, :, 0] = along
+    points[0, :, 1] = 0.5 * width
+    points[1, :, 1] = -0.5 * width
+    return points
+
+
+def edge_bearing(edge_angle: float) -> tuple[float, float]:
+    """Return how far (0..1) the left and the right edge may bear at `edge_angle` [rad], positive when leaning left.
+
+    Both bear on a flat ski; the left one alone past `FADE_TO` to the left [SG19 Eq. 27 without its chatter].
+    """
+    x = (abs(edge_angle) - FADE_FROM) / (FADE_TO - FADE_FROM)
+    x = 0.0 if x < 0.0 else 1.0 if x > 1.0 else x
+    lifted = 1.0 - x * x * (3.0 - 2.0 * x)
+    return (1.0, lifted) if edge_angle > 0.0 else (lifted, 1.0)
+
+
+def edge_lift(edge_angle: np.ndarray, width: float) -> np.ndarray:
+    """Return how far [m] the middle of a ski's base rises when it stands on one edge; smooth through flat."""
+    soft = 0.05
+    return 0.5 * width * (np.sqrt(np.sin(edge_angle) ** 2 + soft**2) - soft)
