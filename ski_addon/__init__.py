@@ -19,7 +19,7 @@ _PUBLIC = {
     "SkierFell": "errors",
     "make_plan": "pipeline",
     "run_simulation": "pipeline",
-    "Recording": "simulation.recording",
+    "Recording": "simulation",
 }
 
 __all__ = ["__version__", *_PUBLIC]  # noqa: PLE0604 - names are strings of a table

@@ -12,7 +12,7 @@ from .spec import PART_KINDS, RunSpec, estimate, find_document
 from .talk import Talk, json_text, summary_lines
 
 if TYPE_CHECKING:
-    from .simulation.recording import Recording
+    from .simulation import Recording
 
 DEMO_PRESET = "giant_slalom"
 

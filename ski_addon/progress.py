@@ -34,9 +34,9 @@ class ProgressDisplay:
     def __call__(self, fraction: float, text: str) -> bool:
         """Show that `fraction` (0..1) of the work named `text` is done; returns True (never cancels)."""
         fraction = min(max(fraction, 0.0), 1.0)
-        if text != self._text:
-            self._text, self._started, self._parts_said = text, self._clock(), 0
-            self._drawn_at = float("-inf")
+        if text.split(" ")[0] != self._text.split(" ")[0]:  # other work: what follows its first word may count along
+            self._started, self._parts_said, self._drawn_at = self._clock(), 0, float("-inf")
+        self._text = text
         if self._stream is None:
             return True
         if self._terminal:

@@ -23,7 +23,7 @@ from .spec import RunSpec
 from .talk import Talk, json_text
 
 if TYPE_CHECKING:
-    from .simulation.recording import Recording
+    from .simulation import Recording
 
 Progress = Callable[[float, str], Any]
 STROBE_INSTANTS = 10
@@ -78,16 +78,16 @@ def plan_lines(summary: Mapping[str, Any]) -> list[str]:
 def simulate_run(spec: RunSpec, progress: Progress) -> tuple[Recording, dict[str, Any]]:
     """Plan and simulate a run; returns its recording and summary, also if the skier fell."""
     from .pipeline import make_plan, run_simulation
-    from .simulation.summary import summarise
+    from .simulation import summarise
 
     progress(0.0, "planning")
-    recording = run_simulation(make_plan(spec), progress)
-    return recording, summarise(recording, spec)
+    recording, step_seconds = run_simulation(make_plan(spec), progress)
+    return recording, summarise(recording, step_seconds)
 
 
 def load_recording(path: Path) -> Recording:
     """Read a recording; raises `RecordingError` or `MissingInputError`."""
-    from .simulation.recording import Recording
+    from .simulation import Recording
 
     return Recording.load(path)
 

@@ -31,6 +31,7 @@ class SyntheticRecording:
     arc_length: np.ndarray
     speed: np.ndarray
     track_position: np.ndarray
+    track_tangent: np.ndarray
     surface_normal: np.ndarray
     phase: np.ndarray
     inclination: np.ndarray
@@ -58,7 +59,10 @@ def synthetic_recording(
     swing = np.sin(2 * np.pi * time / 5.0)
     tilt = np.radians(10.0)
     normal = np.tile([np.sin(tilt), 0.0, np.cos(tilt)], (len(time), 1))
-    x, y = 8.0 * time, 4.0 * np.cumsum(np.sin(2 * np.pi * (time - 1.25) / 5.0)) * 0.01
+    x, y = 8.0 * time, -10.0 / np.pi * swing
+    steps = np.stack(
+        (np.full_like(time, 8.0), -4.0 * np.cos(2 * np.pi * time / 5.0), -8.0 * np.tan(tilt) + 0 * time), axis=1
+    )
     inclination = np.radians(30.0) * swing
     weight = 9.81 * spec.skier.mass
     left = np.array([0.0, 1.0, 0.0])
@@ -70,13 +74,15 @@ def synthetic_recording(
             "spec_hash": spec.content_hash(),
             "status": status,
             "status_detail": detail or {},
-            "joint_names": list(HINGES),
+            "actuated_joint_names": list(HINGES),
+            "mass": spec.skier.mass,
             "gravity": [0.0, 0.0, -9.81],
         },
         time=time,
         arc_length=8.0 * time,
         speed=8.0 + swing**2,
         track_position=np.stack((x, y, -x * np.tan(tilt)), axis=1),
+        track_tangent=steps / np.linalg.norm(steps, axis=1, keepdims=True),
         surface_normal=normal,
         phase=np.where(np.abs(swing) > 0.5, np.sign(swing), 0).astype(np.int8),
         inclination=inclination,

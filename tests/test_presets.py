@@ -79,7 +79,7 @@ def test_paper_parts_are_what_the_paper_runs_use():
 def test_lively_runs_are_on_slopes_that_carry_them():
     for identifier in LIVELY:
         spec = read(identifier)
-        assert 8 <= spec.slope.angle_deg <= 12 and 0.04 <= spec.snow.friction <= 0.05
+        assert 8 <= spec.slope.angle_deg <= 12 and 0.04 <= spec.snow.friction <= 0.06
         assert spec.technique.angulation == "auto" and spec.technique.inclination_max_deg == 45
 
 

@@ -74,6 +74,16 @@ def test_new_work_starts_its_own_clock_and_lines():
     assert stream.getvalue().splitlines() == ["planning: 100%", "simulating:  50%, 2 s left"]
 
 
+def test_text_that_counts_along_is_the_same_work():
+    stream, clock = io.StringIO(), Clock()
+    with ProgressDisplay(stream, clock) as display:
+        for second in range(11):
+            clock.now = float(second)
+            display(second / 10, f"simulating {second} of 10 s")
+    lines = stream.getvalue().splitlines()
+    assert len(lines) == 10 and lines[4] == "simulating 5 of 10 s:  50%, 5 s left"
+
+
 def test_fractions_outside_zero_to_one_are_clamped():
     stream = io.StringIO()
     with ProgressDisplay(stream, Clock()) as display:

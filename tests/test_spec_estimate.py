@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from ski_addon.simulation.recorder import COUNTS, SHAPES
 from ski_addon.spec import RunSpec, estimate
-from ski_addon.spec.estimate import MEMORY_MAX, show_bytes, show_duration
+from ski_addon.spec.estimate import BYTES_PER_STEP, MEMORY_MAX, show_bytes, show_duration
 
 
 def estimate_of(**changes):
@@ -27,6 +29,11 @@ def test_steps_memory_and_waiting_grow_as_the_time_step_shrinks():
     assert coarse.steps == 7500 and fine.steps == 30000
     assert fine.memory_bytes == 4 * coarse.memory_bytes
     assert fine.wall_seconds > 2 * coarse.wall_seconds
+
+
+def test_memory_of_a_step_is_that_of_a_recorded_one():
+    numbers = sum(int(np.prod(shape, dtype=int)) for shape in SHAPES.values()) + len(COUNTS)
+    assert pytest.approx(2 * 8 * numbers, rel=0.1) == BYTES_PER_STEP
 
 
 def test_too_large_by_skiing_or_by_memory():

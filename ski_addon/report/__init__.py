@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..simulation.recording import Recording
+    from ..simulation import Recording
 
 
 def save_report(recording: Recording, target: str | Path) -> None:

@@ -16,7 +16,7 @@ from . import panels
 from .style import INK, QUIET, RC
 
 if TYPE_CHECKING:
-    from ..simulation.recording import Recording
+    from ..simulation import Recording
 
 SIZE_INCHES = (14.0, 13.5)
 DPI = 110

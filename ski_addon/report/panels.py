@@ -11,7 +11,7 @@ from . import series
 from .style import INK, LEFT, QUIET, RIGHT, SPEED_MAP, THIRD, curve, draw_bands, finish
 
 if TYPE_CHECKING:
-    from ..simulation.recording import Recording
+    from ..simulation import Recording
 
 LABELLED_JOINTS = 4
 

@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..spec import RunSpec
-
 if TYPE_CHECKING:
-    from ..simulation.recording import Recording
+    from ..simulation import Recording
 
 Array = np.ndarray
 
@@ -52,9 +50,8 @@ class TorqueSeries(NamedTuple):
 
 
 def body_weight(recording: Recording) -> float:
-    """Return the weight of the skier without equipment [N]."""
-    gravity = float(np.linalg.norm(recording.header.get("gravity", (0.0, 0.0, -9.81))))
-    return RunSpec.from_text(recording.header["spec"], "the run document in the recording").skier.mass * gravity
+    """Return the weight of the skier with equipment [N], the unit of all forces in a report."""
+    return float(recording.header["mass"]) * float(np.linalg.norm(recording.header["gravity"]))
 
 
 def ski_forces(recording: Recording) -> Array:
@@ -65,19 +62,8 @@ def ski_forces(recording: Recording) -> Array:
 def force_split(recording: Recording) -> ForceSplit:
     """Return the resultant snow force along the surface normal and to the left of the track, as [SG19 Fig. 15]."""
     total = recording.snow_force.sum(axis=1) / body_weight(recording)  # (n, 3)
-    left = np.cross(recording.surface_normal, track_tangent(recording.track_position))
+    left = np.cross(recording.surface_normal, recording.track_tangent)
     return ForceSplit(np.sum(total * recording.surface_normal, axis=1), np.sum(total * left, axis=1))
-
-
-def track_tangent(position: Array) -> Array:
-    """Return unit tangents (n,3) of a path of points (n,3) passed forwards; a lone point looks along x."""
-    if len(position) < 2:
-        return np.tile([1.0, 0.0, 0.0], (len(position), 1))
-    reach = min(10, len(position) - 1)  # over several steps, so that rounding does not show
-    index = np.arange(len(position))
-    step = position[np.minimum(index + reach, len(position) - 1)] - position[np.maximum(index - reach, 0)]
-    length = np.linalg.norm(step, axis=1, keepdims=True)
-    return np.where(length > 1e-9, step / np.maximum(length, 1e-9), [1.0, 0.0, 0.0])
 
 
 def phase_bands(time: Array, phase: Array) -> list[Band]:
@@ -91,7 +77,7 @@ def phase_bands(time: Array, phase: Array) -> list[Band]:
 
 def torque_by_joint(recording: Recording) -> list[TorqueSeries]:
     """Return the torque ratios joined by joint, hardest first (both sides, all axes)."""
-    hinges = list(recording.header["joint_names"])[: recording.torque_ratio.shape[1]]
+    hinges = recording.header["actuated_joint_names"]
     out = []
     for name, body in JOINT_GROUPS.items():
         columns = [i for i, hinge in enumerate(hinges) if hinge.partition(".")[0].rpartition("_")[0] == body]

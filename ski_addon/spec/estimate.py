@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .run_spec import RunSpec
 
-BYTES_PER_STEP = 1750
-"""Memory of one recorded step [bytes]: about 220 numbers of 8 bytes."""
-SECONDS_PER_STEP = 1.5e-3
+BYTES_PER_STEP = 3100
+"""Memory of one recorded step [bytes]: about 195 numbers of 8 bytes, twice while the recording is put together."""
+SECONDS_PER_STEP = 0.8e-3
 """Waiting time of one step [s], measured on one slow core with checks and recording."""
 SECONDS_TO_PLAN = 3.0
 """Waiting time of start, plan and writing [s]."""
