@@ -15,6 +15,8 @@ from .formulation import Formulation, Problem
 SOLVED = 1
 """OSQP's status value for a solution within tolerance."""
 TOLERANCE = 1e-5
+STEP_SIZE = 0.1
+"""OSQP's rho: right while no torque or hinge limit binds; steps on which one does adapt it and then return to it."""
 MOST_ITERATIONS = 4000
 HARD_ITERATIONS = 40000
 """Iterations of further attempts, from a cold start."""
@@ -54,10 +56,11 @@ class OsqpSolver:
             np.full(rows, 1.0),
             verbose=False,
             scaling=0,
-            rho=0.1,
+            rho=STEP_SIZE,
             sigma=1e-6,
             alpha=1.6,
-            adaptive_rho=0,
+            adaptive_rho=1,  # by iterations, never by time
+            adaptive_rho_interval=50,
             check_termination=5,
             eps_abs=TOLERANCE,
             eps_rel=TOLERANCE,
@@ -100,6 +103,8 @@ class OsqpSolver:
         solver.solve()
         info = solver.info
         status = 0 if info.status_val == SOLVED else int(info.status_val)
+        if info.rho_updates:
+            solver.update_rho(STEP_SIZE)
         unknowns = np.array(solver.solution.x)
         if status != 0 and not np.all(np.isfinite(unknowns)):  # OSQP gives no point when it proves infeasibility
             unknowns = self._zero[0].copy()

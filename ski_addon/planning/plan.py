@@ -96,6 +96,7 @@ def plan_motion(spec: RunSpec, track: Track, terrain: Terrain, model: SkierModel
     angulation = _angulation(spec, speed, track.curvature)
     poses = plan_poses(model.skeleton, stance, frames, track.position, com, pendulum.inclination, angulation)
     _check_reach(track, time, poses)
+    _check_ranges(track, time, poses, model)
     tightest = max(float(np.max(np.abs(track.curvature))), 1e-9)
     return MotionPlan(
         arc_length=track.arc_length,
@@ -157,12 +158,13 @@ def _angulation(spec: RunSpec, speed: np.ndarray, curvature: np.ndarray) -> np.n
     """Return beta_a (n,): the spec's constant, or from speed and radius.
 
     The paper leaves beta_a constant and notes that faster and tighter turns should angulate more; here it grows with
-    the turn's sideways acceleration in units of gravity, from 0.35 in a straight run towards 0.75.
+    the turn's sideways acceleration in units of gravity, from 0.35 in a straight run towards 0.75. The growth is even
+    in the curvature, so that it stays smooth where a turn changes side.
     """
     if spec.technique.angulation != "auto":
         return np.full_like(speed, float(spec.technique.angulation))
-    sideways = speed**2 * np.abs(curvature) / 9.81
-    return -(0.35 + 0.40 * sideways / (0.6 + sideways))
+    sideways = speed**2 * curvature / 9.81
+    return -(0.35 + 0.40 * sideways**2 / (0.36 + sideways**2))
 
 
 def _place(track: Track, time: np.ndarray, index: int) -> str:
@@ -210,3 +212,16 @@ def _check_reach(track: Track, time: np.ndarray, poses: PlannedPoses) -> None:
             "(change technique.knee_bend_deg or skier.stance_width, or lean less)"
         )
         raise PlanInfeasible(_place(track, time, worst), None, reason)
+
+
+def _check_ranges(track: Track, time: np.ndarray, poses: PlannedPoses, model: SkierModel) -> None:
+    angles = poses.qpos[:, model.actuated_qpos]
+    beyond = np.maximum(model.joint_lower - angles, angles - model.joint_upper)
+    worst, hinge = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
+    if beyond[worst, hinge] > 0.0:
+        name = model.skeleton.joint_names[model.skeleton.actuated[hinge]]
+        reason = (
+            f"{name} would bend {np.rad2deg(beyond[worst, hinge]):.1f} degrees past its range (bring "
+            "technique.angulation nearer to 0, change technique.knee_bend_deg or lean less)"
+        )
+        raise PlanInfeasible(_place(track, time, int(worst)), None, reason)
