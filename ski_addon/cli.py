@@ -48,7 +48,7 @@ def build_parser(prog: str = "python -m ski_addon") -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"Ski Addon {__version__}")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for add in (_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_validate, _add_demo):
+    for add in (_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_render, _add_validate, _add_demo):
         add(subparsers)
     return parser
 
@@ -206,6 +206,17 @@ def _add_report(subparsers: _Subparsers) -> None:
     parser = _command(subparsers, "report", "draw the plots of a recording", "Needs matplotlib.")
     parser.add_argument("source", metavar="RECORDING|DIR", help="recording.npz, or the folder it is in")
     _add_output(parser, "FILE.png", "picture to write (report.png beside the recording if not given)")
+
+
+def _add_render(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "render",
+        "render one picture of a recording, with the skier at several instants",
+        "Needs Blender's Python module bpy.",
+    )
+    parser.add_argument("source", metavar="RECORDING|DIR", help="recording.npz, or the folder it is in")
+    _add_output(parser, "FILE.png", "picture to write (strobe.png beside the recording if not given)")
 
 
 def _add_validate(subparsers: _Subparsers) -> None:

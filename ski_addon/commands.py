@@ -68,13 +68,20 @@ def bake_command(arguments: argparse.Namespace) -> int:
 
 def report_command(arguments: argparse.Namespace) -> int:
     """`report`: recording -> picture of its plots."""
-    path = _recording_path(arguments.source)
-    if path is None:
-        raise MissingInputError(arguments.source, "it is not a recording (recording.npz, or the folder it is in)")
     results.check_matplotlib()
-    target = _target(arguments.output or path.parent, "report.png")
+    path, target = _picture_paths(arguments, "report.png")
     with atomic.output_folder(target.parent):
         results.draw_report(results.load_recording(path), target)
+    _talk(arguments).say(f"wrote {target}")
+    return 0
+
+
+def render_command(arguments: argparse.Namespace) -> int:
+    """`render`: recording -> one picture of the slope with the skier at several instants."""
+    results.check_blender("rendering")
+    path, target = _picture_paths(arguments, "strobe.png")
+    with atomic.output_folder(target.parent):
+        results.run_blender_command("render", path, target)
     _talk(arguments).say(f"wrote {target}")
     return 0
 
@@ -100,16 +107,25 @@ def demo_command(arguments: argparse.Namespace) -> int:
     """`demo`: the giant-slalom preset, simulated, baked and pictured."""
     results.check_blender("the demo")
     spec, talk = RunSpec.from_toml(find_document(DEMO_PRESET)), _talk(arguments)
+    talk.say(f"{spec.name}: {estimate(spec).described}")
     with atomic.output_folder(arguments.output) as folder:
         recording, summary = _simulated(spec, talk)
         results.write_run(folder, spec, recording, summary, report=True, talk=talk)
         results.raise_unless_finished(recording)
         talk.say("baking skier.blend")
-        results.bake(recording, spec, folder / "skier.blend")
-        talk.say("rendering strobe.png")
-        results.render_strobe(recording, spec, folder / "strobe.png")
+        results.run_blender_command("bake", folder / "recording.npz", folder / "skier.blend")
+        talk.say("rendering strobe.png, about a minute")
+        results.run_blender_command("render", folder / "recording.npz", folder / "strobe.png")
     _tell(talk, spec, summary, folder)
     return 0
+
+
+def _picture_paths(arguments: argparse.Namespace, name: str) -> tuple[Path, Path]:
+    """Return the recording a command was given, and the picture to write."""
+    path = _recording_path(arguments.source)
+    if path is None:
+        raise MissingInputError(arguments.source, "it is not a recording (recording.npz, or the folder it is in)")
+    return path, _target(arguments.output or path.parent, name)
 
 
 def _simulate_into(spec: RunSpec, arguments: argparse.Namespace, *, report: bool) -> int:

@@ -161,5 +161,5 @@ class Cancelled(SkiAddonError):  # noqa: N818 - not a fault
 
     exit_code = 130
 
-    def __init__(self, message: str = "interrupted: nothing was written") -> None:
+    def __init__(self, message: str = "interrupted: no half-written file is left") -> None:
         super().__init__(message)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import atomic
+from . import apart, atomic
 from .errors import (
     BlenderMissingError,
     Cancelled,
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from .simulation import Recording
 
 Progress = Callable[[float, str], Any]
-STROBE_INSTANTS = 10
 
 
 def check_blender(needed_for: str) -> None:
@@ -151,16 +150,32 @@ def draw_report(recording: Recording, target: Path) -> None:
 
 def bake(recording: Recording, spec: RunSpec, target: Path) -> None:
     """Bake a recording into a .blend file."""
-    from .blender.headless import bake_file
+    with apart.silenced():
+        from .blender.headless import bake_file
 
-    bake_file(recording, spec, target)
+        bake_file(recording, spec, target)
 
 
 def render_strobe(recording: Recording, spec: RunSpec, target: Path) -> None:
-    """Render one picture of the slope with the skier at several instants."""
-    from .blender.strobe import render_strobe as render
+    """Render one picture of the slope with the skier at several instants; raises `RenderError`."""
+    with apart.silenced():
+        from .blender.strobe import render_strobe as render
 
-    render(recording, spec, target)
+        render(recording, spec, target)
+
+
+def run_blender_command(name: str, recording_path: Path, target: Path) -> None:
+    """Run `bake` or `render` of a recording in a process of its own, and write `target` whole.
+
+    Inside Blender, and in that process itself, it is done here.
+    """
+    if apart.inside_blender() or apart.is_apart():
+        recording = load_recording(recording_path)
+        {"bake": bake, "render": render_strobe}[name](recording, recorded_spec(recording), target)
+        return
+    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
+        apart.run_apart([name, str(recording_path.resolve()), "--output", str(Path(temporary, target.name).resolve())])
+        atomic.move_all(Path(temporary), target.parent)
 
 
 def complain(message: str) -> None:

@@ -36,6 +36,7 @@ def blender(monkeypatch):
             raise RecordingError(path, "there is no such file")
         return recorded
 
+    monkeypatch.setattr(results.apart, "is_apart", lambda: True)  # all in this process
     for name, stand_in in {
         "check_blender": lambda needed_for: None,
         "bake": bake,
@@ -94,7 +95,7 @@ def test_bake_of_a_missing_recording_leaves_no_folder(run, blender, tmp_path):
     assert code == 3 and "there is no such file" in err and files(tmp_path) == []
 
 
-@pytest.mark.parametrize("arguments", [["bake", "paper_main", "-o"], ["demo", "-o"]])
+@pytest.mark.parametrize("arguments", [["bake", "paper_main", "-o"], ["demo", "-o"], ["render", "x.npz", "-o"]])
 def test_without_blender_one_line_and_exit_code_4_before_anything_is_done(run, monkeypatch, tmp_path, arguments):
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "bpy" else find(name))
@@ -122,8 +123,31 @@ def test_picture_that_cannot_be_rendered_is_exit_code_7(run, blender, monkeypatc
         raise RenderError("Cycles could not render strobe.png: no device")
 
     monkeypatch.setattr(results, "render_strobe", fail)
-    code, _, err = run("demo", "-o", tmp_path, "--quiet")
+    (tmp_path / "recording.npz").write_text("")
+    code, _, err = run("render", tmp_path)
     assert code == 7 and err == "ski_addon: Cycles could not render strobe.png: no device\n"
+
+
+def test_picture_of_a_recording_is_rendered_beside_it(run, blender, tmp_path):
+    (tmp_path / "recording.npz").write_text("")
+    code, out, err = run("render", tmp_path)
+    assert (code, err) == (0, "") and out == f"wrote {tmp_path / 'strobe.png'}\n"
+    assert (tmp_path / "strobe.png").read_text() == "PNG"
+
+
+def test_demo_leaves_blender_to_other_processes(run, blender, monkeypatch, tmp_path):
+    started = []
+
+    def run_apart(arguments):
+        started.append(arguments[0])
+        results.Path(arguments[-1]).write_text("made apart")
+
+    monkeypatch.setattr(results.apart, "is_apart", lambda: False)
+    monkeypatch.setattr(results.apart, "run_apart", run_apart)
+    code, out, err = run("demo", "-o", tmp_path, "--json")
+    assert (code, err, started) == (0, "", ["bake", "render"]) and json.loads(out)["status"] == "finished"
+    assert (tmp_path / "skier.blend").read_text() == (tmp_path / "strobe.png").read_text() == "made apart"
+    assert "bake" not in blender and len(files(tmp_path)) == 6
 
 
 def test_report_is_drawn_beside_the_recording(run, blender, tmp_path):

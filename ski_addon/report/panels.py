@@ -116,4 +116,4 @@ def draw_speed(axes: Any, recording: Recording) -> None:
 
 
 def _peak_mm(error: np.ndarray) -> str:
-    return f"{1000 * float(np.max(error)):.2g} mm"
+    return f"{1000 * float(np.max(error)):.3g} mm"
