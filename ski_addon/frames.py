@@ -11,8 +11,8 @@ import numpy as np
 Array = np.ndarray
 
 
-def rotation_about(axis: str, angle: Array) -> Array:
-    """Return right-handed rotation matrices (..., 3, 3) about the coordinate axis "x", "y" or "z" by `angle` (...) [rad]."""
+def rotation_about(axis: str, angle: Array | float) -> Array:
+    """Return right-handed rotations (..., 3, 3) about the coordinate axis "x", "y" or "z" by `angle` (...) [rad]."""
     angle = np.asarray(angle, dtype=float)
     c, s = np.cos(angle), np.sin(angle)
     first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]

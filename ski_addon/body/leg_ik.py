@@ -73,7 +73,9 @@ def solve_leg(
     shank_rotation = _frame(knee_axis, shank_up)
     thigh_in_pelvis = np.swapaxes(pelvis_rotation, -1, -2) @ _frame(knee_axis, thigh_up)
     shank_in_foot = np.einsum("nji,nj->ni", foot_rotation, shank_rotation[..., 2])
-    foot_y = np.arctan2(-shank_in_foot[:, 0], shank_in_foot[:, 1] * np.sin(wanted_side) + shank_in_foot[:, 2] * np.cos(wanted_side))
+    foot_y = np.arctan2(
+        -shank_in_foot[:, 0], shank_in_foot[:, 1] * np.sin(wanted_side) + shank_in_foot[:, 2] * np.cos(wanted_side)
+    )
     return LegAngles(
         thigh=_euler_yxz(thigh_in_pelvis),
         shank=shank_angle,

@@ -228,7 +228,7 @@ def _offset(name: str, sizes: _Sizes) -> tuple[float, float, float]:
 
 def _rotation(name: str) -> np.ndarray:
     angle = POLE_TILT if name.startswith("pole") else 0.0
-    return quaternion_from_matrix(rotation_about("y", np.float64(angle)))
+    return quaternion_from_matrix(rotation_about("y", float(angle)))
 
 
 def _box(mass: float, x: float, y: float, z: float) -> np.ndarray:

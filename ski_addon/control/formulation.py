@@ -28,6 +28,7 @@ from .gains import (
     FORCE_LIMIT_WEIGHTS,
     FORCE_UNIT,
     JOINT_LIMIT_TIME,
+    LIFTING_EDGE_WEIGHTS,
     Gains,
 )
 from .tasks import Desired
@@ -142,6 +143,7 @@ class Formulation:
         weight = model.mass * 9.81 / FORCE_UNIT
         self._normal_cap = FORCE_LIMIT_WEIGHTS * weight
         shear = EDGE_SHEAR_RATIO * weight
+        self._lifting_cap = LIFTING_EDGE_WEIGHTS * weight / self.segments
         self._shear_cap = min(shear, self.snow.shear_limit / FORCE_UNIT / self.segments)
 
     # -- build, each step --------------------------------------------------------------------------------------------
@@ -225,12 +227,20 @@ class Formulation:
         lower = self._lower[self._snow_rows].reshape(2, 2, 2, segments)  # ski, normal or side, left or right edge
         upper = self._upper[self._snow_rows].reshape(2, 2, 2, segments)
         for ski, angle in enumerate(edge_angle.tolist()):
-            left, right = edge_bearing(angle)
-            upper[ski, 0, 0], upper[ski, 0, 1] = self._normal_cap * left, self._normal_cap * right
-            # an edged ski pushes snow away from its lean only: it can be pushed towards it
-            to_left, to_right = self._shear_cap * left, self._shear_cap * right
-            upper[ski, 1, 0], lower[ski, 1, 0] = to_left, -min(to_left, to_right)
-            upper[ski, 1, 1], lower[ski, 1, 1] = min(to_left, to_right), -to_right
+            for edge, bearing in enumerate(edge_bearing(angle)):
+                normal, side = self._caps(bearing)
+                upper[ski, 0, edge] = normal
+                # an edge can be pushed across the ski from its outer side only; a flat ski's either way
+                lifting = self._caps(min(edge_bearing(angle)))[1]
+                upper[ski, 1, edge] = side if edge == 0 else min(side, lifting)
+                lower[ski, 1, edge] = -side if edge == 1 else -min(side, lifting)
+
+    def _caps(self, bearing: float) -> tuple[float, float]:
+        """Return the most normal and side force at a point of an edge that bears by `bearing`, 0..1."""
+        if bearing >= 1.0:
+            return self._normal_cap, self._shear_cap
+        lifting = bearing * self._lifting_cap
+        return lifting, min(lifting, self._shear_cap)
 
     # -- read a solution ---------------------------------------------------------------------------------------------
 
@@ -274,7 +284,9 @@ def _cross_matrix(force: np.ndarray) -> np.ndarray:
     return np.array(((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0)))
 
 
-def _surface_axes(rotation: np.ndarray, velocity: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+def _surface_axes(
+    rotation: np.ndarray, velocity: np.ndarray, normal: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
     """Return the ski's direction of travel and its left across the edge within the snow, and its speed [m/s].
 
     Friction acts against the travel; side force acts across the ski [SG19 Fig. 9].

@@ -46,3 +46,5 @@ FORCE_LIMIT_WEIGHTS = 6.0
 """Most normal force at one contact point, in units of the skier's weight."""
 EDGE_SHEAR_RATIO = 6.0
 """Most side force at one contact point on an unlimited snow, in units of the skier's weight."""
+LIFTING_EDGE_WEIGHTS = 0.5
+"""Most force on a whole edge that begins to lift, in units of the skier's weight; it fades to nothing from there."""

@@ -131,8 +131,8 @@ class TaskSet:
         rotation = dynamics.root_rotation
         # the root's angular velocity and acceleration are in its own axes
         self.desired.pelvis[:] = (
-            (gain.kp * error + gain.kd * spin + spin_rate) @ rotation - gain.kd * dynamics.velocity[3:6]
-        )
+            gain.kp * error + gain.kd * spin + spin_rate
+        ) @ rotation - gain.kd * dynamics.velocity[3:6]
 
     def _angular_momentum(self, velocity: np.ndarray, spin: np.ndarray) -> None:
         dynamics, planned = self.dynamics, self._reference_velocity
@@ -144,7 +144,7 @@ class TaskSet:
 
 
 def _rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:
-    """Return the world rotation vector [rad] that turns `current` into `target` (quaternions, `target` unnormalised)."""
+    """Return the world rotation vector [rad] that turns `current` into `target`, a quaternion of any length."""
     tw, tx, ty, tz = target
     cw, cx, cy, cz = current
     w = tw * cw + tx * cx + ty * cy + tz * cz

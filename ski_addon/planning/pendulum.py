@@ -58,9 +58,7 @@ def balanced_pendulum(
     """
     from scipy.ndimage import gaussian_filter1d
 
-    time, curvature, speed, gravity_left, gravity_normal = _padded(
-        time, curvature, speed, gravity_left, gravity_normal
-    )
+    time, curvature, speed, gravity_left, gravity_normal = _padded(time, curvature, speed, gravity_left, gravity_normal)
     h = np.full_like(time, length)
     normal = gravity_normal.copy()
     y = np.zeros_like(time)

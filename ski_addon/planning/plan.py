@@ -120,9 +120,7 @@ def plan_motion(spec: RunSpec, track: Track, terrain: Terrain, model: SkierModel
     )
 
 
-def _balance(
-    spec: RunSpec, track: Track, stance: Stance, gravity: _Gravity
-) -> tuple[np.ndarray, np.ndarray, Pendulum]:
+def _balance(spec: RunSpec, track: Track, stance: Stance, gravity: _Gravity) -> tuple[np.ndarray, np.ndarray, Pendulum]:
     """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
     snow = Snow.of(spec.snow, spec.skier)
     pendulum = _upright(track, stance, gravity)

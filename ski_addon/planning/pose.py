@@ -88,7 +88,7 @@ def _lean_upper_body(
     skeleton: Skeleton, qpos: np.ndarray, frames: np.ndarray, inclination: np.ndarray, angulation: np.ndarray
 ) -> None:
     pelvis_lean = (1.0 + angulation) * inclination
-    pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("y", np.float64(PELVIS_PITCH))
+    pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("y", float(PELVIS_PITCH))
     qpos[:, 3:7] = quaternion_from_matrix(pelvis)
     for hinge, share in SPINE_SHARE.items():
         qpos[:, skeleton.qpos_of(hinge)] += share * -angulation * inclination

@@ -83,7 +83,7 @@ def _pose(skeleton: Skeleton, reach: float, angle: float) -> np.ndarray:
         qpos[:, address] = value
     legs = solve_leg(skeleton, hip, pelvis, ankle, ski_rotation)
     for side, sign in (("L", 1.0), ("R", -1.0)):
-        for name, value in (
+        for name, angles in (
             ("thigh_y", legs.thigh[:, 0]),
             ("thigh_x", sign * legs.thigh[:, 1]),
             ("thigh_z", sign * legs.thigh[:, 2]),
@@ -91,7 +91,7 @@ def _pose(skeleton: Skeleton, reach: float, angle: float) -> np.ndarray:
             ("foot_y", legs.foot_y),
             ("foot_x", sign * legs.foot_x),
         ):
-            qpos[:, skeleton.qpos_of(f"{name}.{side}")] = value
+            qpos[:, skeleton.qpos_of(f"{name}.{side}")] = angles
     return qpos[0]
 
 

@@ -138,7 +138,8 @@ def _read_header(source: Path, members: Any) -> dict[str, Any]:
         raise RecordingError(source, "it is not a recording of a ski run")
     version = document.pop("format_version", None)
     if version != FORMAT_VERSION:
-        raise RecordingError(source, f"it has format version {version}, this version reads {FORMAT_VERSION}; simulate again")
+        reason = f"it has format version {version}, this version reads {FORMAT_VERSION}; simulate again"
+        raise RecordingError(source, reason)
     return document
 
 

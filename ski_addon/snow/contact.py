@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-FADE_FROM, FADE_TO = np.deg2rad(1.0), np.deg2rad(4.0)
+FADE_FROM, FADE_TO = np.deg2rad(0.5), np.deg2rad(8.0)
 """Edge angles [rad] between which the lifted edge stops bearing."""
 
 

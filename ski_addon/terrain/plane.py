@@ -11,11 +11,11 @@ import numpy as np
 class Terrain(Protocol):
     """A snow surface over the horizontal plane; x points down the fall line, y to the left [m, world]."""
 
-    def height(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         """Return the surface's z [m] at `x`, `y` (broadcast together)."""
         ...
 
-    def normal(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def normal(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         """Return upward unit normals (..., 3) at `x`, `y`."""
         ...
 
@@ -27,12 +27,12 @@ class PlaneTerrain:
         """Take the slope's angle [rad], 0 for flat ground."""
         self.angle = angle
 
-    def height(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         """Return z [m] at `x`, `y`; see `Terrain`."""
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         return -x * math.tan(self.angle)
 
-    def normal(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def normal(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         """Return unit normals (..., 3); see `Terrain`."""
         shape = np.broadcast_shapes(np.shape(x), np.shape(y))
         return np.broadcast_to([math.sin(self.angle), 0.0, math.cos(self.angle)], (*shape, 3)).copy()
