@@ -1,0 +1,9 @@
+"""Benchmarks: run one with `python -m benchmarks.step`.
+
+Importing this package keeps numeric libraries to one thread.
+"""
+
+import os
+
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")

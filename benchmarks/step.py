@@ -1,0 +1,142 @@
+"""Microseconds of a simulation step by stage: `python -m benchmarks.step [SPEC] [--steps N] [--json FILE]`.
+
+Times are wall times of one thread. Machines differ and are shared, so a calibration loop (small matrix products and
+plain Python, like the step itself) is timed in the same run; compare ratios to it, not microseconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from ski_addon.pipeline import make_plan, start_simulation
+from ski_addon.simulation import Simulation
+from ski_addon.spec import RunSpec
+
+PRESET = Path(__file__).resolve().parents[1] / "presets" / "runs" / "paper_main.toml"
+STAGES = (
+    ("reference look-up", "reference", "at"),
+    ("MuJoCo and dynamics", "dynamics", "update"),
+    ("tasks", "controller.tasks", "update"),
+    ("build the program", "controller.formulation", "build"),
+    ("solve the program", "controller.solver", "solve"),
+    ("read torques, forces", "controller.formulation", "torques"),
+    ("read torques, forces", "controller.formulation", "snow_force"),
+    ("read torques, forces", "controller.formulation", "root_residual"),
+    ("read torques, forces", "controller.formulation", "edge_forces"),
+    ("read torques, forces", "controller.formulation", "ski_forces"),
+    ("forward dynamics", "dynamics", "accelerations"),
+    ("integrate", "dynamics", "integrate"),
+    ("record", "_recorder", "add"),
+)
+"""Stage name, object within the simulation, method."""
+
+
+class StageTimer:
+    """Replaces methods of a simulation by timed ones and collects seconds by stage; nested calls count once."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        """Wrap every stage of `simulation`."""
+        self.step: dict[str, float] = defaultdict(float)
+        self._depth = 0
+        for stage, path, method in STAGES:
+            owner: Any = simulation
+            for part in path.split("."):
+                owner = getattr(owner, part)
+            setattr(owner, method, self._timed(stage, getattr(owner, method)))
+
+    def _timed(self, stage: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def timed(*args: Any) -> Any:
+            self._depth += 1
+            begin = perf_counter()
+            try:
+                return function(*args)
+            finally:
+                self._depth -= 1
+                if self._depth == 0:
+                    self.step[stage] += perf_counter() - begin
+
+        return timed
+
+
+def calibration(rounds: int = 2000) -> float:
+    """Return the median seconds of a fixed loop of numpy and Python work."""
+    matrix = np.random.default_rng(0).standard_normal((37, 37))
+    times = []
+    for _ in range(rounds):
+        begin = perf_counter()
+        product = matrix @ matrix
+        total = 0.0
+        for value in product[0].tolist():
+            total += value * value
+        times.append(perf_counter() - begin)
+    return float(np.median(times))
+
+
+def measure(spec: RunSpec, steps: int, warm_up: int = 200) -> dict[str, Any]:
+    """Return microseconds by stage (median, 99th percentile) over `steps` steps, with and without the stage timers."""
+    planned = make_plan(spec)
+    plain = start_simulation(planned)
+    plain.advance(warm_up + steps)
+    whole = np.array(plain.step_seconds[warm_up:]) * 1e6
+    staged = start_simulation(planned)
+    timer = StageTimer(staged)
+    rows: dict[str, list[float]] = defaultdict(list)
+    for index in range(warm_up + steps):
+        timer.step.clear()
+        if not staged.advance(1):
+            break
+        if index >= warm_up:
+            for stage, seconds in timer.step.items():
+                rows[stage].append(seconds * 1e6)
+    stages = {name: _percentiles(np.array(values)) for name, values in rows.items()}
+    calibrated = calibration() * 1e6
+    total = _percentiles(whole)
+    return {
+        "steps": len(whole),
+        "stages_us": stages,
+        "step_us": total,
+        "calibration_us": calibrated,
+        "step_over_calibration": total["median"] / calibrated,
+    }
+
+
+def _percentiles(values: np.ndarray) -> dict[str, float]:
+    return {"median": float(np.median(values)), "p99": float(np.percentile(values, 99))}
+
+
+def table(result: dict[str, Any]) -> str:
+    """Return the result as lines of text."""
+    lines = [f"{'stage':24s}{'median us':>12s}{'p99 us':>10s}"]
+    for stage, entry in result["stages_us"].items():
+        lines.append(f"{stage:24s}{entry['median']:12.1f}{entry['p99']:10.1f}")
+    whole = result["step_us"]
+    lines.append(f"{'whole step':24s}{whole['median']:12.1f}{whole['p99']:10.1f}")
+    lines.append(
+        f"calibration loop {result['calibration_us']:.2f} us; a step is {result['step_over_calibration']:.1f} x"
+    )
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Run the benchmark and print its table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("spec", nargs="?", default=str(PRESET), help="run document (default: the paper's main case)")
+    parser.add_argument("--steps", type=int, default=4000, help="steps to time")
+    parser.add_argument("--json", help="also write the numbers to this file")
+    arguments = parser.parse_args()
+    result = measure(RunSpec.from_toml(arguments.spec), arguments.steps)
+    print(table(result))
+    if arguments.json:
+        Path(arguments.json).write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
