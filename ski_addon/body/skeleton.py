@@ -51,8 +51,8 @@ HINGES = {
 
 BOOT_AND_BINDING_HEIGHT = 0.0615
 """What boot sole, binding and ski add below the foot [m]."""
-POLE_TILT = np.deg2rad(75.0)
-"""Angle from the hand's forearm line to the pole; at this tilt a pole trails down and back in the skiing stance."""
+POLE_TILT = np.deg2rad(150.0)
+"""Angle from forearm to pole with its spring at rest; in the skiing stance the pole then trails down and back."""
 
 
 @dataclass(frozen=True)

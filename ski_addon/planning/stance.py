@@ -14,13 +14,13 @@ from ..frames import quaternion_from_matrix, rotation_about
 PELVIS_PITCH = np.deg2rad(20.0)
 """Forward tilt of the pelvis in the stance."""
 UPPER_BODY_DEG = {
-    "abdomen_y": 14.0,
-    "chest_y": 14.0,
-    "head_y": -32.0,
-    "upper_arm_y": -42.0,
-    "upper_arm_x": 24.0,
-    "upper_arm_z": -12.0,
-    "forearm_y": -62.0,
+    "abdomen_y": 13.0,
+    "chest_y": 12.0,
+    "head_y": -29.0,
+    "upper_arm_y": -52.0,
+    "upper_arm_x": 26.0,
+    "upper_arm_z": -14.0,
+    "forearm_y": -66.0,
     "hand_y": 0.0,
 }
 """Hinge angles [deg] of the upper body, left side; x and z rotations mirror on the right."""
