@@ -51,7 +51,7 @@ HINGES = {
 
 BOOT_AND_BINDING_HEIGHT = 0.0615
 """What boot sole, binding and ski add below the foot [m]."""
-POLE_TILT = np.deg2rad(150.0)
+POLE_TILT = np.deg2rad(136.0)
 """Angle from forearm to pole with its spring at rest; in the skiing stance the pole then trails down and back."""
 
 

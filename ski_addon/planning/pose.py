@@ -23,10 +23,10 @@ BOOT_PLAY = np.deg2rad(4.0)
 SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
 """Lean taken back by spine and head, in units of the pelvis's angulation angle."""
 
-ARM_RAISE, ARM_RAISE_BOTH, ARM_SPREAD, WRIST_TURN = 0.35, 0.35, 0.35, 0.4
-"""How arms follow the lean: the inside arm rises (in units of the lean, and of its square in radians for both), both
-swing towards the outside, and the inside wrist turns its pole back. It keeps hands level, the inside pole off the snow
-and the outside one off the leg.
+ARM_RAISE, ARM_SPREAD, WRIST_TURN = 0.35, 0.35, 0.45
+"""How arms follow the lean, in units of the lean: both swing towards the outside; the inside arm rises and its wrist
+turns the pole back, the outside one's sink and turn forward. Rise and turn also grow by their factor times the lean
+squared [rad] on both sides. It keeps hands level, the inside pole off the snow and the outside one off the leg.
 """
 
 
@@ -99,9 +99,9 @@ def _lean_upper_body(
     for hinge, share in SPINE_SHARE.items():
         qpos[:, skeleton.qpos_of(hinge)] += share * -angulation * inclination
     for side, inside in (("L", inclination), ("R", -inclination)):
-        qpos[:, skeleton.qpos_of(f"upper_arm_y.{side}")] -= ARM_RAISE * inside + ARM_RAISE_BOTH * inside**2
+        qpos[:, skeleton.qpos_of(f"upper_arm_y.{side}")] -= ARM_RAISE * (inside + inside**2)
         qpos[:, skeleton.qpos_of(f"upper_arm_x.{side}")] -= ARM_SPREAD * inclination
-        qpos[:, skeleton.qpos_of(f"hand_y.{side}")] += WRIST_TURN * inside
+        qpos[:, skeleton.qpos_of(f"hand_y.{side}")] += WRIST_TURN * (inside + inside**2)
 
 
 def _solve_legs(
