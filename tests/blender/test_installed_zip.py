@@ -55,6 +55,6 @@ def test_a_short_run_is_simulated(core: Callable[[str], ModuleType], folder: Pat
     spec = core("spec").RunSpec.from_toml(folder / "presets" / "runs" / "giant_slalom.toml")
     pipeline = core("pipeline")
     planned = pipeline.make_plan(spec.with_overrides({"course.turn_count": "1"}))
-    recording = pipeline.run_simulation(planned, lambda fraction, text: None)
+    recording, _ = pipeline.run_simulation(planned, lambda fraction, text: None)
     assert recording.header["status"] == "finished"
     assert float(recording.ski_error.max()) < 0.01
