@@ -65,10 +65,15 @@ class FallWatch:
         if not (np.all(np.isfinite(dynamics.qpos)) and np.all(np.isfinite(dynamics.qvel))):
             return Fall("diverged", time, "the state is no longer a number", progress, self._why(time, command))
         normal = self._terrain.normal(dynamics.com[0], dynamics.com[1])
-        what = self._what(normal, command, ski_error)
-        return None if what is None else Fall("fell", time, what, progress, self._why(time, command))
+        what = self._what(normal, ski_error)
+        if what is not None:
+            return Fall("fell", time, what, progress, self._why(time, command))
+        if command.rate < STALLED:
+            why = "friction and slope no longer carry it forward"
+            return Fall("fell", time, "the skier came to a stop", progress, why)
+        return None
 
-    def _what(self, normal: np.ndarray, command: Command, ski_error: float) -> str | None:
+    def _what(self, normal: np.ndarray, ski_error: float) -> str | None:
         dynamics, height = self._dynamics, self._height
         head = self._above_snow(dynamics.body_position(self._head), normal)
         com = self._above_snow(dynamics.com, normal)
@@ -80,16 +85,12 @@ class FallWatch:
             return f"the body came down to {com:.2f} m over the snow"
         if ski_error > SKI_LEFT_TRACK:
             return f"a ski left its track by {ski_error:.2f} m"
-        if command.rate < STALLED:
-            return "the skier came to a stop"
         return None
 
     def _above_snow(self, point: np.ndarray, normal: np.ndarray) -> float:
         return float((point[2] - self._terrain.height(point[0], point[1])) * normal[2])
 
     def _why(self, time: float, command: Command) -> str:
-        if command.rate < STALLED:
-            return "friction and slope no longer carry it forward"
         if self._saturated_since is not None:
             held = time - self._saturated_since
             return f"{self._saturated_hinge} had been at its torque limit for {held:.2f} s"
