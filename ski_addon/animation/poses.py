@@ -1,4 +1,4 @@
-"""A recording resampled to scene frames: the world pose of every body, and the numbers an animator wants to drive with."""
+"""A recording resampled to scene frames: the world pose of every body, and numbers to see or drive with."""
 
 from __future__ import annotations
 
@@ -8,13 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..body.kinematics import forward_kinematics
-from ..errors import SpecError
+from ..errors import SkiAddonError, SpecError
 from ..frames import Array, matrix_from_quaternion, quaternion_from_matrix
 from .interpolation import Bracket, bracket, linear, slerp
 
 if TYPE_CHECKING:
     from ..body.skeleton import Skeleton
     from ..simulation.recording import Recording
+
+
+class EmptyRecordingError(SkiAddonError):
+    """The recording has no step, so that there is nothing to show."""
+
+    exit_code = 3
+
+    def __init__(self) -> None:
+        super().__init__("the recording is empty: the run ended before its first step; simulate again")
 
 
 @dataclass(frozen=True)
@@ -60,11 +69,20 @@ def sample_body_poses(
 ) -> BodyPoses:
     """Return the world pose of every body of `recording` at the scene frames of a scene of `fps` [1/s].
 
-    Positions are linear and rotations slerped between the two recorded states around each key.
+    Raises `SpecError` for an impossible rate and `EmptyRecordingError` if nothing was recorded.
     """
-    clock = np.asarray(recording.time, dtype=float) - recording.time[0]
-    frame, time = frame_times(float(clock[-1]), fps, subframes, frame_start)
-    where = bracket(clock, time)
+    if len(recording.time) == 0:
+        raise EmptyRecordingError
+    frame, time = frame_times(float(recording.time[-1] - recording.time[0]), fps, subframes, frame_start)
+    return body_poses_at(recording, skeleton, time, frame)
+
+
+def body_poses_at(recording: Recording, skeleton: Skeleton, time: Array, frame: Array | None = None) -> BodyPoses:
+    """Return the world pose of every body at `time` (m,) [s] since the start of `recording`.
+
+    Positions are linear and rotations slerped between the two recorded states around each time.
+    """
+    where = bracket(np.asarray(recording.time, dtype=float) - recording.time[0], time)
     position_low, rotation_low = forward_kinematics(skeleton, recording.qpos[where.low])
     position_high, rotation_high = forward_kinematics(skeleton, recording.qpos[where.high])
     share = where.share[:, None]
@@ -74,7 +92,8 @@ def sample_body_poses(
         quaternion_from_matrix(rotation_high),
         np.broadcast_to(share, position.shape[:2]),
     )
-    return BodyPoses(frame, time, position, quaternion, tuple(skeleton.body_names))
+    frame = np.arange(len(time), dtype=float) if frame is None else frame
+    return BodyPoses(frame, np.asarray(time, dtype=float), position, quaternion, tuple(skeleton.body_names))
 
 
 @dataclass(frozen=True)

@@ -79,10 +79,15 @@ def paint_material(name: str) -> bpy.types.Material:
     return material
 
 
+def with_nodes(block: bpy.types.Material | bpy.types.World) -> None:
+    """Make a material or world use nodes; from Blender 5.0 on they all do."""
+    if bpy.app.version < (5, 0, 0):
+        block.use_nodes = True
+
+
 def new_material(name: str) -> tuple[bpy.types.Material, bpy.types.ShaderNode]:
     """Return a new node material and its Principled shader."""
     material = bpy.data.materials.new(name)
-    if not material.use_nodes:
-        material.use_nodes = True
+    with_nodes(material)
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
     return material, shader

@@ -159,12 +159,6 @@ def _dress_bones(armature: bpy.types.Object, figure: Figure) -> None:
         pose_bone.custom_shape_scale_xyz = scale
         if name not in EQUIPMENT and name not in (ROOT, "foot.L", "foot.R"):
             pose_bone.custom_shape_translation = (0.0, 0.5 * pose_bone.bone.length, 0.0)
-    data["ski_skeleton"] = _measures(figure)
-
-
-def _measures(figure: Figure) -> dict[str, float]:
-    skeleton = figure.skeleton
-    return {"height": skeleton.height, "mass": float(skeleton.mass.sum()), "ski_length": skeleton.ski_length}
 
 
 def pose_matrix(armature: bpy.types.Object, bone: str) -> Matrix:

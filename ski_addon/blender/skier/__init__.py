@@ -1,1 +1,1 @@
-"""The look of the skier: low-poly clothes, helmet, boots, skis and poles as plain arrays, sized from a `Skeleton`. No bpy."""
+"""The look of the skier: clothes, helmet, boots, skis and poles as plain arrays, sized from a `Skeleton`. No bpy."""

@@ -122,10 +122,10 @@ def _shell_buckles(figure: Figure) -> list[Part]:
     for x in (0.19, 0.33):
         rows = []
         for shift, grow in ((-0.032, 0.99), (-0.025, 1.06), (0.025, 1.06), (0.032, 0.99)):
-            w, t = np.interp(x + shift, place, width), np.interp(x + shift, place, top)
+            w, t = float(np.interp(x + shift, place, width)), float(np.interp(x + shift, place, top))
             rows.append(_arch((x + shift) * length, grow * w * half, floor, floor + grow * t * rise))
         parts.append(loft(np.stack(rows), "boots_trim", (False, False)))
-        parts.append(_lever((x * length, 1.02 * half, floor + 0.40 * np.interp(x, place, top) * rise)))
+        parts.append(_lever((x * length, 1.02 * half, floor + 0.40 * float(np.interp(x, place, top)) * rise)))
     return parts
 
 

@@ -11,7 +11,7 @@ from .shapes import Part, Ring, chain_weights, dome, join, smooth_step, stack
 TRUNK_POINTS = 28
 LIMB_POINTS = 16
 
-# height above the pelvis, half width, depth in front, depth behind: from the inside of the hem to the inside of the collar
+# height above the pelvis, half width, depth in front and behind: from inside the hem to inside the collar
 _TRUNK = (
     (-0.040, 0.094, 0.070, 0.073),
     (-0.066, 0.106, 0.077, 0.081),
@@ -27,11 +27,11 @@ _TRUNK = (
     (0.215, 0.101, 0.073, 0.074),
     (0.222, 0.101, 0.0722, 0.0737),
     (0.250, 0.104, 0.068, 0.072),
-    (0.275, 0.107, 0.061, 0.068),
-    (0.297, 0.102, 0.053, 0.062),
-    (0.311, 0.084, 0.046, 0.055),
-    (0.319, 0.060, 0.043, 0.047),
-    (0.326, 0.0465, 0.044, 0.042),
+    (0.275, 0.110, 0.061, 0.068),
+    (0.297, 0.109, 0.053, 0.061),
+    (0.311, 0.094, 0.045, 0.054),
+    (0.321, 0.066, 0.042, 0.047),
+    (0.328, 0.0475, 0.043, 0.043),
     (0.347, 0.0450, 0.047, 0.041),
     (0.351, 0.042, 0.044, 0.038),
     (0.345, 0.039, 0.041, 0.035),
@@ -43,8 +43,8 @@ _ZIP_WIDTH = 0.05
 
 # share of the way from shoulder to wrist, half width, front, back; the last rows turn the cuff in
 _SLEEVE = (
-    (0.00, 0.0340, 0.0375, 0.0385),
-    (0.10, 0.0345, 0.0375, 0.0385),
+    (0.00, 0.0310, 0.0355, 0.0365),
+    (0.10, 0.0335, 0.0365, 0.0375),
     (0.24, 0.0333, 0.0350, 0.0365),
     (0.28, 0.0328, 0.0343, 0.0358),
     (0.37, 0.0315, 0.0325, 0.034),
@@ -163,7 +163,7 @@ def _sleeve(figure: Figure) -> Part:
     h = figure.h
     shoulder, elbow, wrist = (figure.place[name] for name in ("upper_arm.L", "forearm.L", "hand.L"))
     rings = _limb_rings(_SLEEVE, shoulder, wrist, h * figure.girth)
-    cap = dome(rings[0], 0.027 * h * figure.girth, 4)[::-1]
+    cap = dome(rings[0], 0.019 * h * figure.girth, 4)[::-1]
     part = stack(
         [*cap, *rings], LIMB_POINTS, lambda row, column: _sleeve_material(row - len(cap), column), (True, False)
     )

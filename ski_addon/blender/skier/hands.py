@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from ...frames import rotation_about
 from .figure import Figure
 from .shapes import Part, Ring, dome, join, stack
@@ -48,7 +46,7 @@ def _thumb(size: float) -> Part:
     rows = [ring.scaled(0.85, 0.0), ring.scaled(1.05, -0.14 * size), ring.scaled(1.0, -0.28 * size)]
     tip = dome(rows[-1], -0.08 * size, 3)
     thumb = stack([*rows, *tip], 8, "gloves")
-    tilt = rotation_about("x", np.float64(-0.55)) @ rotation_about("y", np.float64(-0.35))
+    tilt = rotation_about("x", -0.55) @ rotation_about("y", -0.35)
     return thumb.turned(tilt).moved((0.22 * size, 0.05 * size, -0.27 * size))
 
 

@@ -115,7 +115,7 @@ def grid(points: Array, material: str) -> Part:
     return facing_out(Part(points.reshape(-1, 3), faces, [material] * len(faces)))
 
 
-def _goggle_point(angle: Array, height: Array, grow: float) -> Array:
+def _goggle_point(angle: Array, height: float, grow: float) -> Array:
     """Return points of the goggles at `angle` [rad] to the side and `height` 0..1; the nose takes a notch below."""
     notch = 0.010 * np.exp(-((angle / 0.20) ** 2))
     taper = 0.006 * smooth_step(np.abs(angle), 0.75 * GOGGLES_HALF_ANGLE, GOGGLES_HALF_ANGLE)
@@ -130,16 +130,16 @@ def _goggle_point(angle: Array, height: Array, grow: float) -> Array:
 def _goggles() -> Part:
     angle = np.linspace(-GOGGLES_HALF_ANGLE, GOGGLES_HALF_ANGLE, 17)
     rows = (
-        _goggle_point(angle, np.float64(0.02), -0.012),
-        _goggle_point(angle, np.float64(0.0), 0.003),
-        _goggle_point(angle, np.float64(0.10), 0.0045),
-        _goggle_point(angle, np.float64(0.16), 0.0025),
-        _goggle_point(angle, np.float64(0.38), 0.0025),
-        _goggle_point(angle, np.float64(0.62), 0.0025),
-        _goggle_point(angle, np.float64(0.84), 0.0025),
-        _goggle_point(angle, np.float64(0.90), 0.0045),
-        _goggle_point(angle, np.float64(1.0), 0.003),
-        _goggle_point(angle, np.float64(0.98), -0.012),
+        _goggle_point(angle, 0.02, -0.012),
+        _goggle_point(angle, 0.0, 0.003),
+        _goggle_point(angle, 0.10, 0.0045),
+        _goggle_point(angle, 0.16, 0.0025),
+        _goggle_point(angle, 0.38, 0.0025),
+        _goggle_point(angle, 0.62, 0.0025),
+        _goggle_point(angle, 0.84, 0.0025),
+        _goggle_point(angle, 0.90, 0.0045),
+        _goggle_point(angle, 1.0, 0.003),
+        _goggle_point(angle, 0.98, -0.012),
     )
     part = grid(np.stack(rows), "goggles_frame")
     columns = len(angle) - 1

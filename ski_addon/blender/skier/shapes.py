@@ -61,11 +61,11 @@ class Part:
     """
 
     vertices: Array
-    faces: list[Face]
+    faces: Sequence[Face]
     materials: list[str]
     weights: dict[str, Array] = field(default_factory=dict)
 
-    def moved(self, offset: Sequence[float]) -> Part:
+    def moved(self, offset: Sequence[float] | Array) -> Part:
         """Return this part shifted by `offset` (3,) [m]."""
         return replace(self, vertices=self.vertices + np.asarray(offset, dtype=float))
 
@@ -170,7 +170,7 @@ def smooth_step(value: Array, low: float, high: float) -> Array:
 def chain_weights(
     z: Array, names: Sequence[str], joints: Sequence[float], blend: Sequence[float], rising: bool = False
 ) -> dict[str, Array]:
-    """Return weights of bodies that follow each other along z: `names[i]` and `names[i + 1]` meet at height `joints[i]`.
+    """Return weights of bodies that follow each other along z; `names[i]` and `names[i + 1]` meet at `joints[i]`.
 
     Each joint blends over `blend[i]` [m] to either side. The chain hangs down, or goes up if `rising`.
     """
@@ -185,7 +185,7 @@ def chain_weights(
     return weights
 
 
-def box(size: Sequence[float], material: str, bevel: float = 0.2) -> Part:
+def box(size: Sequence[float] | Array, material: str, bevel: float = 0.2) -> Part:
     """Return a bevelled box of `size` (x, y, z) [m] whose middle is the origin; `bevel` is a share of the height."""
     x, y, z = (0.5 * s for s in size)
     cut = bevel * z

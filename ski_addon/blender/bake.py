@@ -1,0 +1,137 @@
+"""Bake: a recording becomes keyframes on a skier's armature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..animation.bone_map import BoneMap
+from ..animation.keyframes import BoneKeyframes, bone_keyframes
+from ..animation.poses import Channel, sample_body_poses, sample_channels
+from ..body import Skeleton, build_skeleton
+from ..errors import SpecError
+from ..spec import BakeSpec, RunSpec, SkierSpec
+from .channels import KeyWriter, assign_action, bake_action
+from .rig import build_rig, rest_pose
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+
+BONE_MAP = Path(__file__).resolve().parents[2] / "presets" / "bone_maps" / "skier.toml"
+CHANNEL_GROUP = "Ski run"
+SKIER_PROPERTY = "ski_skier"
+"""Custom property of an armature's data: the measures of the skier it was made for."""
+
+
+@dataclass(frozen=True)
+class BakeResult:
+    """What a bake made: the `armature`, its `action`, and its first and last frame (the last may be a part of one)."""
+
+    armature: bpy.types.Object
+    action: bpy.types.Action
+    frame_first: float
+    frame_last: float
+
+
+def scene_rate(scene: bpy.types.Scene) -> float:
+    """Return the frames per second of `scene`, its base included."""
+    return float(scene.render.fps) / float(scene.render.fps_base)
+
+
+def recorded_run(recording: Recording) -> RunSpec:
+    """Return the run document that `recording` was made from."""
+    return RunSpec.from_text(recording.header["spec"], "the run document in the recording")
+
+
+def recorded_skier(recording: Recording) -> SkierSpec:
+    """Return the skier that `recording` was made with."""
+    return recorded_run(recording).skier
+
+
+def bake_recording(
+    recording: Recording,
+    scene: bpy.types.Scene,
+    *,
+    armature: bpy.types.Object | None = None,
+    options: BakeSpec | None = None,
+    bone_map: BoneMap | None = None,
+) -> BakeResult:
+    """Bake `recording` in `scene`, at the scene's own frame rate, onto `armature` (default: a new skier).
+
+    `options` gives keys per frame, first frame and the action's name; its frame rate is not used. The frame range of
+    scene and action is set. Nothing else of the file is changed, the selection included.
+    """
+    options = options or BakeSpec()
+    skier = recorded_skier(recording)
+    skeleton = build_skeleton(skier)
+    bone_map = bone_map or BoneMap.load(BONE_MAP)
+    poses = sample_body_poses(recording, skeleton, scene_rate(scene), options.subframes, options.frame_start)
+    if armature is None:
+        armature = new_skier(skier, skeleton, scene)
+    check_armature(armature, bone_map, skeleton)
+    rest = rest_pose(armature, bone_map, skeleton)
+    keyframes = bone_keyframes(poses, bone_map, rest, np.array(armature.matrix_world.inverted()))
+    action, slot, channelbag = bake_action(armature, options.action)
+    writer = KeyWriter(channelbag, poses.frame)
+    _write_bones(armature, keyframes, writer)
+    _write_channels(armature, sample_channels(recording, poses.time), writer)
+    assign_action(armature, action, slot)
+    _set_range(scene, action, poses.frame)
+    return BakeResult(armature, action, float(poses.frame[0]), float(poses.frame[-1]))
+
+
+def new_skier(skier: SkierSpec, skeleton: Skeleton, scene: bpy.types.Scene) -> bpy.types.Object:
+    """Make a skier of the measures of `skier` in `scene` and return its armature."""
+    armature = build_rig(skeleton, scene).armature
+    armature.data[SKIER_PROPERTY] = _measures(skier)
+    return armature
+
+
+def fits(armature: bpy.types.Object, skier: SkierSpec) -> bool:
+    """Return whether `armature` is a skier made with just the measures of `skier`."""
+    if armature.type != "ARMATURE":
+        return False
+    measures = armature.data.get(SKIER_PROPERTY)
+    return measures is not None and measures.to_dict() == _measures(skier)
+
+
+def _measures(skier: SkierSpec) -> dict[str, float | str]:
+    return dict(RunSpec(skier=skier).to_dict()["skier"])
+
+
+def check_armature(armature: bpy.types.Object, bone_map: BoneMap, skeleton: Skeleton) -> None:
+    """Raise `SpecError` unless every bone of `bone_map` is there and those that move are free to."""
+    if armature.type != "ARMATURE":
+        raise SpecError(armature.name, armature.type, "ARMATURE", "choose a skier's armature", problem="is not an")
+    bone_map.check(armature.data.bones.keys(), skeleton.body_names)
+    for entry in bone_map.entries:
+        if entry.location and armature.data.bones[entry.bone].use_connect:
+            hint = "turn its Connected off, or take location out of the bone map"
+            raise SpecError(f"bones.{entry.bone}", None, "", hint, problem="is a connected bone and cannot move")
+
+
+def _write_bones(armature: bpy.types.Object, keyframes: BoneKeyframes, writer: KeyWriter) -> None:
+    for channels in keyframes.channels:
+        armature.pose.bones[channels.bone].rotation_mode = "QUATERNION"
+        path = f'pose.bones["{bpy.utils.escape_identifier(channels.bone)}"]'
+        if channels.location is not None:
+            writer.write(f"{path}.location", channels.location, channels.bone)
+        writer.write(f"{path}.rotation_quaternion", channels.rotation, channels.bone)
+
+
+def _write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], writer: KeyWriter) -> None:
+    for channel in channels:
+        armature[channel.name] = float(channel.values[0])
+        unit = f" [{channel.unit}]" if channel.unit else ""
+        armature.id_properties_ui(channel.name).update(description=channel.doc + unit)
+        writer.write(f'["{channel.name}"]', channel.values, CHANNEL_GROUP)
+
+
+def _set_range(scene: bpy.types.Scene, action: bpy.types.Action, frame: np.ndarray) -> None:
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = float(frame[0]), float(frame[-1])
+    scene.frame_start, scene.frame_end = int(np.ceil(frame[0])), int(np.floor(frame[-1]))

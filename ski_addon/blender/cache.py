@@ -1,0 +1,71 @@
+"""Where a recording lives between Simulate and Bake: beside the .blend, or in the user's cache until that is saved."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..errors import MissingInputError, OutputError
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+
+FOLDER = "ski_cache"
+KEPT = 10
+"""Recordings of files that were never saved that are kept in the user's cache, newest first."""
+
+
+def save_recording(recording: Recording, scene: bpy.types.Scene) -> str:
+    """Write `recording` and return its path as Blender keeps it (relative to a saved .blend)."""
+    if bpy.data.filepath:
+        blend = Path(bpy.data.filepath)
+        target = blend.parent / FOLDER / f"{_plain(blend.stem)}_{_plain(scene.name)}.npz"
+        try:
+            target.parent.mkdir(exist_ok=True)
+            recording.save(target)
+        except (OSError, OutputError):
+            pass  # the .blend lies where nothing may be written
+        else:
+            return f"//{FOLDER}/{target.name}"
+    folder = user_cache()
+    target = folder / f"{_plain(scene.name)}_{recording.header['spec_hash'][:16]}.npz"
+    recording.save(target)
+    _forget_old(folder)
+    return str(target)
+
+
+def load_recording(path: str) -> Recording:
+    """Read the recording at `path` (as `save_recording` gave it); raises `MissingInputError` or `RecordingError`."""
+    from ..simulation.recording import Recording
+
+    if not path:
+        raise MissingInputError("the recording", "there is none yet: press Simulate")
+    whole = Path(bpy.path.abspath(path))
+    if not whole.is_file():
+        raise MissingInputError(whole, "the recording is not there any more: press Simulate again")
+    return Recording.load(whole)
+
+
+def user_cache() -> Path:
+    """Return the user's folder for recordings of files that are not saved, made if it is missing."""
+    package = __package__.rpartition(".ski_addon.blender")[0]
+    try:
+        return Path(bpy.utils.extension_path_user(package, path="cache", create=True))
+    except ValueError:  # not installed as an extension: a script imports the library
+        folder = Path(tempfile.gettempdir()) / FOLDER
+        folder.mkdir(exist_ok=True)
+        return folder
+
+
+def _forget_old(folder: Path) -> None:
+    recordings = sorted(folder.glob("*.npz"), key=lambda path: path.stat().st_mtime, reverse=True)
+    for path in recordings[KEPT:]:
+        path.unlink(missing_ok=True)
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^\w.-]+", "_", name) or "scene"

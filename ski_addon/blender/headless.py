@@ -1,0 +1,79 @@
+"""Bake without a window: a new .blend with the skier, the slope, light and a camera. It opens in any plain Blender."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .. import atomic
+from ..errors import BlenderMissingError, OutputError
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+    from ..spec import RunSpec
+
+_LOG = logging.getLogger(__name__)
+
+
+def require_blender(needed_for: str) -> None:
+    """Raise `BlenderMissingError` unless `bpy` can be imported."""
+    if "bpy" not in sys.modules and importlib.util.find_spec("bpy") is None:
+        raise BlenderMissingError(needed_for)
+    try:
+        import bpy  # noqa: F401 - found, but it may be built for another system
+    except ImportError as error:
+        raise BlenderMissingError(needed_for, str(error)) from error
+
+
+def bake_file(recording: Recording, spec: RunSpec, target: str | Path) -> Path:
+    """Write `target`, a new .blend with `recording` baked at the frame rate of `spec.bake`, in one step.
+
+    The file holds plain Blender data only. Raises `BlenderMissingError` or `OutputError`. The open file is closed, so
+    this is for Blender without a window.
+    """
+    require_blender("baking")
+    check_target(target)
+    import bpy
+
+    from .bake import bake_recording
+    from .camera import build_follow_camera
+    from .stage import add_collection, build_stage, empty_file
+
+    scene = empty_file()
+    scene.name = "Ski run"
+    set_frame_rate(scene, spec.bake.fps)
+    build_stage(recording, spec, scene)
+    result = bake_recording(recording, scene, options=spec.bake)
+    build_follow_camera(result.armature, scene, add_collection(scene, "Camera"))
+    scene.frame_set(scene.frame_start)
+    with atomic.atomic_path(target) as temporary:
+        save_copy(temporary)
+    _LOG.info("wrote %s with Blender %s", target, bpy.app.version_string)
+    return Path(target)
+
+
+def check_target(target: str | Path) -> None:
+    """Raise `OutputError`, before any work is done, if `target` has no folder (Blender would make it)."""
+    if not Path(target).parent.is_dir():
+        raise OutputError(target, "there is no such folder")
+
+
+def save_copy(path: Path) -> None:
+    """Save the open file as `path`; raises `OSError` where Blender says it could not."""
+    import bpy
+
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True, relative_remap=False)
+    except RuntimeError as error:
+        raise OSError(str(error).strip().removeprefix("Error: ")) from error
+
+
+def set_frame_rate(scene: object, fps: float) -> None:
+    """Set the frame rate [1/s] of `scene`; rates that are not whole, such as 23.976, become a whole one and a base."""
+    render = scene.render  # type: ignore[attr-defined]
+    whole = max(1, round(fps))
+    render.fps = whole
+    render.fps_base = whole / fps

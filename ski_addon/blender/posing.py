@@ -1,0 +1,65 @@
+"""The skier held still at moments of a recording, without keyframes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..animation.bone_map import BoneMap
+from ..animation.keyframes import bone_keyframes
+from ..animation.poses import body_poses_at
+from ..frames import Array
+from .bake import BONE_MAP
+from .rig import Rig, rest_pose
+
+if TYPE_CHECKING:
+    from ..body import Skeleton
+    from ..simulation.recording import Recording
+
+
+def posed(rig: Rig, recording: Recording, skeleton: Skeleton, time: Array) -> Iterator[int]:
+    """Pose `rig` at each of `time` [s] in turn, yielding its index."""
+    bone_map = BoneMap.load(BONE_MAP)
+    poses = body_poses_at(recording, skeleton, time)
+    keyframes = bone_keyframes(poses, bone_map, rest_pose(rig.armature, bone_map, skeleton))
+    for index in range(len(time)):
+        for channels in keyframes.channels:
+            bone = rig.armature.pose.bones[channels.bone]
+            bone.rotation_quaternion = channels.rotation[index]
+            if channels.location is not None:
+                bone.location = channels.location[index]
+        bpy.context.view_layer.update()
+        yield index
+
+
+def world_vertices(obj: bpy.types.Object) -> Array:
+    """Return the world places (n, 3) of the evaluated vertices of `obj`."""
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.data
+    vertices = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", vertices)
+    matrix = np.array(evaluated.matrix_world)
+    return vertices.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def leave_copies(rig: Rig, collection: bpy.types.Collection) -> Array:
+    """Leave copies of the posed meshes in `collection` and return their world vertices (n, 3)."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    points = []
+    for obj in rig.meshes:
+        evaluated = obj.evaluated_get(graph)
+        mesh = bpy.data.meshes.new_from_object(evaluated, depsgraph=graph)
+        copy = bpy.data.objects.new(f"{obj.name} instant", mesh)
+        copy.matrix_world = evaluated.matrix_world
+        collection.objects.link(copy)
+        points.append(world_vertices(obj))
+    return np.concatenate(points)
+
+
+def remove_rig(rig: Rig) -> None:
+    """Remove a skier's objects from the file."""
+    for obj in (*rig.meshes, rig.armature):
+        bpy.data.objects.remove(obj)

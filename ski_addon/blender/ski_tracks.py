@@ -1,0 +1,83 @@
+"""The tracks that the skis leave: a groove between two small ridges of pushed snow, laid on the slope."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..body import Skeleton, forward_kinematics
+from ..frames import Array, normalized
+from ..terrain import Terrain
+from .slope import grid_faces, mesh_object, snow_material
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+
+SPACING = 0.10
+"""Distance between cross sections [m]."""
+# across the track, in half widths of the ski; height [m]; how much of the height grows with edging
+_PROFILE = (
+    (-3.2, -0.010, 0.0),
+    (-2.0, 0.020, 1.0),
+    (-1.1, 0.004, 0.0),
+    (1.1, 0.004, 0.0),
+    (2.0, 0.020, 1.0),
+    (3.2, -0.010, 0.0),
+)
+
+
+def ski_paths(recording: Recording, skeleton: Skeleton) -> list[tuple[Array, Array, Array]]:
+    """Return for each ski, evenly spaced: places (m, 3), directions to the left (m, 3) and edge angles (m,)."""
+    travelled = np.asarray(recording.arc_length) - recording.arc_length[0]
+    wanted = np.arange(0.0, float(travelled[-1]), SPACING)
+    index = np.unique(np.searchsorted(travelled, wanted).clip(0, len(travelled) - 1))
+    position, rotation = forward_kinematics(skeleton, recording.qpos[index])
+    paths = []
+    for side, name in enumerate(("ski.L", "ski.R")):
+        body = skeleton.body(name)
+        paths.append((position[:, body], rotation[:, body, :, 1], recording.edge_angle[index, side]))
+    return paths
+
+
+def groove_vertices(
+    place: Array, left: Array, edge: Array, terrain: Terrain, half_width: float, seed: int = 0
+) -> Array:
+    """Return vertices (m, k, 3) of the groove of a ski of `half_width` [m] at `place` (m, 3) [m, world].
+
+    `left` (m, 3) points across the ski and `edge` (m,) [rad] is its edge angle: an edged ski cuts a narrower groove on
+    the edge's side and pushes up more snow.
+    """
+    normal = terrain.normal(place[:, 0], place[:, 1])
+    across = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
+    lean = np.clip(np.abs(edge) / np.deg2rad(30.0), 0.0, 1.0)
+    shift = np.sign(edge) * lean * 0.5 * half_width
+    rough = np.random.default_rng(seed).uniform(0.6, 1.3, (len(place), len(_PROFILE)))
+    width = half_width * (1.0 - 0.35 * lean)
+    rows = []
+    for column, (share, height, grows) in enumerate(_PROFILE):
+        side = shift + share * width
+        point = place + side[:, None] * across
+        point[:, 2] = terrain.height(point[:, 0], point[:, 1])
+        rise = height * (1.0 + grows * (lean - 0.4)) * np.where(grows > 0, rough[:, column], 1.0)
+        rows.append(point + rise[:, None] * normal)
+    return np.stack(rows, axis=1)
+
+
+def build_ski_tracks(
+    recording: Recording, skeleton: Skeleton, terrain: Terrain, collection: bpy.types.Collection
+) -> list[bpy.types.Object]:
+    """Return the two new track meshes of `recording`."""
+    tracks = []
+    for side, (place, left, edge) in zip("LR", ski_paths(recording, skeleton), strict=True):
+        vertices = groove_vertices(place, left, edge, terrain, 0.5 * skeleton.ski_width, seed=ord(side))
+        rows, columns = vertices.shape[:2]
+        faces = grid_faces(rows, columns)
+        obj = mesh_object(f"Ski track {side}", vertices.reshape(-1, 3), faces, collection)
+        obj.data.materials.append(snow_material())
+        obj.data.materials.append(snow_material("Ski snow groove", "d5e0ee"))
+        floor = np.tile(np.arange(columns - 1) == columns // 2 - 1, rows - 1).astype(np.int32)
+        obj.data.polygons.foreach_set("material_index", floor)
+        tracks.append(obj)
+    return tracks

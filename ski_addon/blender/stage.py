@@ -1,0 +1,57 @@
+"""A fresh file with everything a run needs to be looked at: slope, tracks, trees, light."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ..body import Skeleton, build_skeleton
+from ..spec import RunSpec
+from ..terrain import Terrain, build_terrain
+from .light import build_sky, build_sun
+from .scenery import build_mountains, build_trees
+from .ski_tracks import build_ski_tracks
+from .slope import build_slope
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+
+
+EXPOSURE = 0.8
+"""Exposure [stops] that makes sunny snow look sunny."""
+
+
+def empty_file() -> bpy.types.Scene:
+    """Open an empty file, with what was open closed, and return its scene. Only for Blender without a window."""
+    if not bpy.app.background:
+        raise RuntimeError("an empty file may only be opened in background: it would close the user's")
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return bpy.context.scene
+
+
+def add_collection(scene: bpy.types.Scene, name: str) -> bpy.types.Collection:
+    """Return a new collection linked to `scene`."""
+    collection = bpy.data.collections.new(name)
+    scene.collection.children.link(collection)
+    return collection
+
+
+def build_stage(
+    recording: Recording, spec: RunSpec, scene: bpy.types.Scene, *, sun_azimuth_deg: float = 120.0
+) -> tuple[Skeleton, Terrain]:
+    """Set `scene` up round the track of `recording` and return its skeleton and terrain."""
+    skeleton, terrain = build_skeleton(spec.skier), build_terrain(spec.slope)
+    track = np.asarray(recording.track_position)
+    build_slope(terrain, track, add_collection(scene, "Slope"))
+    build_ski_tracks(recording, skeleton, terrain, add_collection(scene, "Ski tracks"))
+    scenery = add_collection(scene, "Scenery")
+    build_trees(terrain, track, scenery)
+    build_mountains(track.mean(axis=0), scenery)
+    build_sun(add_collection(scene, "Light"), sun_azimuth_deg)
+    build_sky(scene)
+    scene.view_settings.view_transform = "AgX"
+    scene.view_settings.look = "AgX - Medium High Contrast"
+    scene.view_settings.exposure = EXPOSURE
+    return skeleton, terrain

@@ -1,0 +1,86 @@
+"""`scene.ski`: the run document as Blender properties, there and back without loss."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+
+@pytest.fixture
+def properties(core, scene):
+    return core("blender.properties")
+
+
+def test_every_preset_goes_in_and_comes_out_the_same(core, scene, properties) -> None:
+    specs = properties.preset_specs()
+    assert len(specs) >= 8
+    for name, spec in specs.items():
+        scene.ski.preset = name
+        assert properties.read_spec(scene.ski).to_toml() == spec.to_toml(), name
+        assert properties.read_spec(scene.ski).content_hash() == spec.content_hash()
+
+
+def test_a_new_scene_asks_for_the_shown_preset(core, scene, properties) -> None:
+    assert properties.read_spec(scene.ski) == properties.preset_specs()[scene.ski.preset]
+
+
+def test_every_key_of_the_run_document_has_a_property_with_its_range(core, scene) -> None:
+    for key, info in core("spec").field_table().items():
+        if not info.section:
+            continue
+        group = getattr(scene.ski, info.section)
+        shown = group.bl_rna.properties[info.name]
+        assert shown.name == (info.label or info.name), key
+        assert shown.description == info.doc
+        if info.kind in ("number", "whole"):
+            scale = math.radians(1.0) if info.unit == "deg" else 1.0
+            assert shown.hard_min == pytest.approx(info.low * scale, rel=1e-6, abs=1e-6)
+            assert shown.hard_max == pytest.approx(info.high * scale, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("snow.friction", 0.071),
+        ("course.turn_duration", 0.1),
+        ("course.turn_radius", 12.3456),
+        ("snow.hardness", 1.2e8),
+    ],
+)
+def test_numbers_stay_as_they_were_typed(core, scene, properties, key: str, value: float) -> None:
+    section, _, name = key.partition(".")
+    setattr(getattr(scene.ski, section), name, value)
+    assert core("spec.table").get_value(properties.read_spec(scene.ski), key) == value
+
+
+@pytest.mark.parametrize("degrees", [0.0, 5.0, 8.0, 10.0, 12.5, 33.3, 45.0])
+def test_angles_are_radians_in_blender_and_degrees_in_the_document(core, scene, properties, degrees: float) -> None:
+    scene.ski.slope.angle_deg = math.radians(degrees)
+    assert properties.read_spec(scene.ski).slope.angle_deg == degrees
+
+
+def test_a_word_can_be_switched_on_and_off(core, scene, properties) -> None:
+    scene.ski.preset = "paper_main"
+    skier = scene.ski.skier
+    assert properties.read_spec(scene.ski).skier.ski_length == "auto"
+    skier.ski_length_word = False
+    skier.ski_length = 1.65
+    assert properties.read_spec(scene.ski).skier.ski_length == 1.65
+
+
+def test_out_of_range_is_held_at_the_range(core, scene, properties) -> None:
+    scene.ski.skier.height = 9.0
+    scene.ski.slope.angle_deg = math.radians(80.0)
+    spec = properties.read_spec(scene.ski)
+    assert (spec.skier.height, spec.slope.angle_deg) == (2.1, 45.0)
+
+
+def test_settings_are_saved_with_the_file(core, scene, properties, tmp_path) -> None:
+    import bpy
+
+    scene.ski.course.turn_radius = 23.0
+    path = tmp_path / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    assert properties.read_spec(bpy.context.scene.ski).course.turn_radius == 23.0
