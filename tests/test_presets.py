@@ -8,6 +8,7 @@ import tomllib
 import pytest
 
 from ski_addon.errors import MissingInputError
+from ski_addon.results import simulate_run
 from ski_addon.spec import PART_KINDS, PRESET_KINDS, SECTIONS, RunSpec, estimate, find_document, list_presets
 
 RUNS = list_presets("runs")
@@ -117,3 +118,16 @@ def test_presets_of_another_folder_can_be_listed(tmp_path):
     (preset,) = list_presets("snow", tmp_path)
     assert (preset.identifier, preset.name, preset.description) == ("mine", "mine", "x")
     assert set(SECTION_OF.values()) <= set(SECTIONS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", RUNS, ids=identifiers(RUNS))
+def test_run_is_skied_to_its_end_within_twice_the_bounds_of_the_papers_cases(preset):
+    spec = RunSpec.from_toml(preset.path)
+    _, summary = simulate_run(spec, lambda fraction, text: True)
+    assert summary["status"] == "finished" and summary["unconverged_steps"] == 0
+    assert summary["ski_error_max_m"] <= 0.010 and summary["ski_error_rms_m"] <= 0.004
+    assert summary["com_error_max_m"] <= 0.010 and summary["torque_ratio_max"] <= 1.0
+    assert summary["root_residual_max"] <= 0.05
+    if preset.identifier in LIVELY:
+        assert 25 <= summary["inclination_max_deg"] <= 45
