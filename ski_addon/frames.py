@@ -13,7 +13,7 @@ Array = np.ndarray
 
 def rotation_about(axis: str, angle: Array | float) -> Array:
     """Return right-handed rotations (..., 3, 3) about the coordinate axis "x", "y" or "z" by `angle` (...) [rad]."""
-    angle = np.asarray(angle, dtype=float)
+    angle = np.array(angle, dtype=float, order="C")  # contiguous: see `components`
     c, s = np.cos(angle), np.sin(angle)
     first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
     out = np.zeros((*angle.shape, 3, 3))
@@ -23,6 +23,15 @@ def rotation_about(axis: str, angle: Array | float) -> Array:
     out[..., first, second] = -s
     out[..., second, first] = s
     return out
+
+
+def components(vector: Array) -> Array:
+    """Return the components of `vector` (..., k) as contiguous arrays (k, ...).
+
+    numpy computes sines and arc tangents of strided views by one of two routines that differ in the last bit, chosen
+    by where in memory the arrays happen to lie. Contiguous arguments keep results the same from run to run.
+    """
+    return np.ascontiguousarray(np.moveaxis(np.asarray(vector, dtype=float), -1, 0))
 
 
 def matrix_from_columns(x: Array, y: Array, z: Array) -> Array:

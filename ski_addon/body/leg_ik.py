@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..frames import matrix_from_columns, normalized
+from ..frames import components, matrix_from_columns, normalized
 from .skeleton import Skeleton
 
 MINIMUM_KNEE = np.deg2rad(8.0)
@@ -60,8 +60,8 @@ def solve_leg(
     held = np.clip(distance, nearest, reach)
     up = line / distance[:, None]
     knee_axis = normalized(np.cross(up, foot_rotation[..., 0]))
-    in_foot = np.einsum("nji,nj->ni", foot_rotation, knee_axis)
-    wanted_side = np.arctan2(-in_foot[:, 2], in_foot[:, 1])
+    _, axis_y, axis_z = components(np.einsum("nji,nj->ni", foot_rotation, knee_axis))
+    wanted_side = np.arctan2(-axis_z, axis_y)
     foot_x = np.clip(wanted_side, -side_limit, side_limit)
     cos_knee = (thigh_length**2 + shank_length**2 - held**2) / (2 * thigh_length * shank_length)
     shank_angle = np.pi - np.arccos(np.clip(cos_knee, -1.0, 1.0))
@@ -72,10 +72,8 @@ def solve_leg(
     thigh_up = normalized(hip - knee)
     shank_rotation = _frame(knee_axis, shank_up)
     thigh_in_pelvis = np.swapaxes(pelvis_rotation, -1, -2) @ _frame(knee_axis, thigh_up)
-    shank_in_foot = np.einsum("nji,nj->ni", foot_rotation, shank_rotation[..., 2])
-    foot_y = np.arctan2(
-        -shank_in_foot[:, 0], shank_in_foot[:, 1] * np.sin(wanted_side) + shank_in_foot[:, 2] * np.cos(wanted_side)
-    )
+    up_x, up_y, up_z = components(np.einsum("nji,nj->ni", foot_rotation, shank_rotation[..., 2]))
+    foot_y = np.arctan2(-up_x, up_y * np.sin(wanted_side) + up_z * np.cos(wanted_side))
     return LegAngles(
         thigh=_euler_yxz(thigh_in_pelvis),
         shank=shank_angle,
@@ -97,7 +95,8 @@ def _frame(y_axis: np.ndarray, z_axis: np.ndarray) -> np.ndarray:
 
 def _euler_yxz(rotation: np.ndarray) -> np.ndarray:
     """Return angles (n, 3) with `rotation` = Ry Rx Rz."""
-    x = np.arcsin(np.clip(-rotation[:, 1, 2], -1.0, 1.0))
-    y = np.arctan2(rotation[:, 0, 2], rotation[:, 2, 2])
-    z = np.arctan2(rotation[:, 1, 0], rotation[:, 1, 1])
+    entry = components(rotation.reshape(-1, 9))  # row by row
+    x = np.arcsin(np.clip(-entry[5], -1.0, 1.0))
+    y = np.arctan2(entry[2], entry[8])
+    z = np.arctan2(entry[3], entry[4])
     return np.stack((y, x, z), axis=-1)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import PlanInfeasible
-from ..frames import normalized
+from ..frames import components, normalized
 from ..snow import Snow
 from ..spec import CourseSpec, RunSpec
 from ..terrain import Terrain
@@ -139,7 +139,7 @@ def _integrate(
         states[i + 1] = x + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         if states[i + 1, 1] < SLOWEST:
             raise _stopped(time[i + 1], float(x[0]), int(schedule.labels_at(time[i + 1])[1]))
-    return _Motion(time, *states.T)
+    return _Motion(time, *components(states))
 
 
 def _stopped(time: float, arc: float, turn: int) -> PlanInfeasible:

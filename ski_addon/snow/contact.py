@@ -38,4 +38,5 @@ def edge_bearing(edge_angle: float) -> tuple[float, float]:
 def edge_lift(edge_angle: np.ndarray, width: float) -> np.ndarray:
     """Return how far [m] the middle of a ski's base rises when it stands on one edge; smooth through flat."""
     soft = 0.05
-    return 0.5 * width * (np.sqrt(np.sin(edge_angle) ** 2 + soft**2) - soft)
+    sine = np.sin(np.array(edge_angle, dtype=float, order="C"))
+    return 0.5 * width * (np.sqrt(sine**2 + soft**2) - soft)

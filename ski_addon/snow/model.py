@@ -58,7 +58,7 @@ def penetration_depth(snow: Snow, force: np.ndarray, edge_angle: np.ndarray, len
     holds, so that the two laws join where the triangle's base is as wide as the ski.
     """
     force = np.maximum(np.asarray(force, dtype=float), 0.0)
-    tangent = np.abs(np.tan(edge_angle))
+    tangent = np.abs(np.tan(np.array(edge_angle, dtype=float, order="C")))
     flat = 2.0 * force / (snow.hardness * length * width)
     edged = np.sqrt(2.0 * force * tangent / (snow.hardness * length))
     return np.maximum(flat / 2.0, edged)

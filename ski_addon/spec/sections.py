@@ -12,7 +12,7 @@ from .fields import choice, flag, number, text, whole
 class SkierSpec:
     """Who skis, and on what."""
 
-    mass: float = number(50.0, 30, 130, "kg", "Mass", "Body mass without equipment")
+    mass: float = number(50.0, 30, 130, "kg", "Mass", "All the snow carries: body, clothes, boots, skis and poles")
     height: float = number(1.5, 1.2, 2.1, "m", "Height", "Body height without boots")
     sex: str = choice("male", ("male", "female"), "Body", "Table of segment masses and lengths (de Leva)")
     strength: float = number(1.0, 0.3, 3, "", "Strength", "Factor on all human joint torque limits", advanced=True)
