@@ -87,4 +87,6 @@ def test_mirroring_a_rotation_mirrors_what_it_does():
 def test_axes_become_columns_and_are_normalised():
     x, y, z = np.eye(3)
     np.testing.assert_array_equal(frames.matrix_from_columns(y, z, x), np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0.0]]))
-    np.testing.assert_allclose(frames.normalized(np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 2.0]]))[:, 1:], [[0.8, 0], [0, 1]])
+    np.testing.assert_allclose(
+        frames.normalized(np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 2.0]]))[:, 1:], [[0.8, 0], [0, 1]]
+    )
