@@ -15,7 +15,7 @@ import numpy as np
 from ..spec import FieldInfo
 from ..spec.fields import CHOICE, FLAG, TEXT, WHOLE
 
-UNITS = {"m": "LENGTH", "m/s": "VELOCITY", "s": "TIME", "kg": "MASS", "deg": "ROTATION"}
+UNITS = {"m": "LENGTH", "m/s": "VELOCITY", "s": "TIME_ABSOLUTE", "kg": "MASS", "deg": "ROTATION"}
 """Blender's unit by the table's; others are shown as plain numbers."""
 WORD_SUFFIX = "_word"
 """Ending of the switch that stands for a field's word ("auto", "unlimited")."""

@@ -49,10 +49,26 @@ def bake_file(recording: Recording, spec: RunSpec, target: str | Path) -> Path:
     result = bake_recording(recording, scene, options=spec.bake)
     build_follow_camera(result.armature, scene, add_collection(scene, "Camera"))
     scene.frame_set(scene.frame_start)
+    look_through_camera()
     with atomic.atomic_path(target) as temporary:
         save_copy(temporary)
     _LOG.info("wrote %s with Blender %s", target, bpy.app.version_string)
     return Path(target)
+
+
+def look_through_camera() -> None:
+    """Set every 3D view of the file up to look through its camera, without the floor's grid."""
+    import bpy
+
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                view = area.spaces.active
+                view.region_3d.view_perspective = "CAMERA"
+                view.overlay.show_floor = view.overlay.show_axis_x = view.overlay.show_axis_y = False
+                view.overlay.show_relationship_lines = False
+                view.shading.color_type = "MATERIAL"
+                view.clip_end = 6000.0
 
 
 def check_target(target: str | Path) -> None:

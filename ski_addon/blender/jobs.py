@@ -119,7 +119,7 @@ class JobRunner:
         elapsed = now - self._started
         if fraction < 0.02 or elapsed < 0.5:
             return ""
-        return f", {show_duration(elapsed * (1.0 - fraction) / fraction)} left"
+        return f", {show_duration(max(1, round(elapsed * (1.0 - fraction) / fraction)))} left"
 
 
 def redraw_sidebars(context: bpy.types.Context) -> None:

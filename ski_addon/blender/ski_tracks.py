@@ -53,7 +53,7 @@ def groove_vertices(
     across = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
     lean = np.clip(np.abs(edge) / np.deg2rad(30.0), 0.0, 1.0)
     shift = np.sign(edge) * lean * 0.5 * half_width
-    rough = np.random.default_rng(seed).uniform(0.6, 1.3, (len(place), len(_PROFILE)))
+    rough = _roughness(len(place), seed)
     width = half_width * (1.0 - 0.35 * lean)
     rows = []
     for column, (share, height, grows) in enumerate(_PROFILE):
@@ -63,6 +63,14 @@ def groove_vertices(
         rise = height * (1.0 + grows * (lean - 0.4)) * np.where(grows > 0, rough[:, column], 1.0)
         rows.append(point + rise[:, None] * normal)
     return np.stack(rows, axis=1)
+
+
+def _roughness(count: int, seed: int) -> Array:
+    """Return factors (count, k) on the ridges' heights that vary along the track within about half a metre."""
+    noise = np.random.default_rng(seed).normal(0.0, 1.0, (count, len(_PROFILE)))
+    window = np.hanning(9)
+    smooth = np.apply_along_axis(lambda column: np.convolve(column, window / window.sum(), mode="same"), 0, noise)
+    return 1.0 + 0.45 * np.clip(smooth, -1.5, 1.5)
 
 
 def build_ski_tracks(

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 SIZE = (1600, 900)
 SAMPLES = 20
-STROBE_TURNS = 3.0
+STROBE_TURNS = 2.5
 """Turns the strobe picture shows."""
-STROBE_AZIMUTH, STROBE_HEIGHT = -12.0, 7.0
-"""Where the strobe's camera stands: beside the line of the turns, below them, and over the horizon [deg]."""
+STROBE_AZIMUTH, STROBE_HEIGHT = -12.0, 15.0
+"""Where the strobe's camera stands: below the turns, beside their line, and over the slope's plane [deg]."""
 STROBE_LENS = 30.0
 SUN_BESIDE = 100.0
 """Azimuth of the sun beside the line of the turns: low, so that shadows fall long across the slope [deg]."""
@@ -56,7 +56,8 @@ def render_strobe(
     points = [leave_copies(rig, figures) for _ in posed(rig, recording, skeleton, time)]
     remove_rig(rig)
     set_render(scene, size, samples)
-    view = direction_from(line + STROBE_AZIMUTH, STROBE_HEIGHT)
+    height = STROBE_HEIGHT - descent_deg(recording, time)
+    view = direction_from(line + STROBE_AZIMUTH, height)
     points.append(points[0] + np.array([0.0, 0.0, 7.0]))  # room for trees and sky over the highest skier
     cameras = add_collection(scene, "Camera")
     build_framing_camera(np.concatenate(points), view, scene, cameras, lens=STROBE_LENS, fill=0.90)
@@ -66,9 +67,20 @@ def render_strobe(
 
 def line_azimuth_deg(recording: Recording, time: Array) -> float:
     """Return the azimuth (0 is +x, 90 is +y) of the straight line from the first to the last of `time` (m,) [s]."""
+    x, y, _ = _line(recording, time)
+    return float(np.degrees(np.arctan2(y, x)))
+
+
+def descent_deg(recording: Recording, time: Array) -> float:
+    """Return how steeply the straight line from the first to the last of `time` (m,) [s] goes down [deg]."""
+    x, y, z = _line(recording, time)
+    return float(np.degrees(np.arctan2(-z, np.hypot(x, y))))
+
+
+def _line(recording: Recording, time: Array) -> Array:
     clock = np.asarray(recording.time) - recording.time[0]
     first, last = (recording.track_position[np.searchsorted(clock, t)] for t in (time[0], time[-1] - 1e-9))
-    return float(np.degrees(np.arctan2(last[1] - first[1], last[0] - first[0])))
+    return np.asarray(last - first)
 
 
 def strobe_times(recording: Recording, instants: int, turns: float = STROBE_TURNS) -> Array:

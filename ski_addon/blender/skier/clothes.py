@@ -14,12 +14,12 @@ LIMB_POINTS = 16
 # height above the pelvis, half width, depth in front and behind: from inside the hem to inside the collar
 _TRUNK = (
     (-0.040, 0.094, 0.070, 0.073),
-    (-0.066, 0.106, 0.077, 0.081),
-    (-0.070, 0.111, 0.083, 0.087),
-    (-0.061, 0.113, 0.085, 0.089),
-    (-0.053, 0.112, 0.084, 0.088),
-    (-0.020, 0.106, 0.078, 0.084),
-    (0.020, 0.094, 0.069, 0.072),
+    (-0.066, 0.106, 0.082, 0.081),
+    (-0.070, 0.111, 0.088, 0.087),
+    (-0.061, 0.113, 0.090, 0.089),
+    (-0.053, 0.112, 0.089, 0.088),
+    (-0.020, 0.107, 0.083, 0.084),
+    (0.020, 0.096, 0.073, 0.073),
     (0.055, 0.085, 0.064, 0.064),
     (0.090, 0.086, 0.065, 0.064),
     (0.130, 0.092, 0.070, 0.067),
@@ -189,7 +189,7 @@ def _leg(figure: Figure) -> Part:
     h = figure.h
     hip, knee, ankle = (figure.place[name] for name in ("thigh.L", "shank.L", "foot.L"))
     rings = _limb_rings(_LEG, hip, ankle, h * (0.5 + 0.5 * figure.girth))
-    cap = dome(rings[0], 0.050 * h, 4)[::-1]
+    cap = dome(rings[0], 0.044 * h, 4)[::-1]
     part = stack([*cap, *rings], LIMB_POINTS, _leg_material, (True, False))
     z = part.vertices[:, 2]
     part.weights = chain_weights(z, ("thigh.L", "shank.L"), [float(knee[2])], [0.04 * h])
