@@ -37,7 +37,7 @@ def transition_centres(course: CourseSpec) -> list[float]:
     return between if course.entry == "turn" else between[1:-2]
 
 
-# -- timing -----------------------------------------------------------------------------------------------------------
+# -- timing ---------------------------------------------
 
 
 def test_claim_19_timing_of_the_main_case():
@@ -89,7 +89,7 @@ def test_curvature_is_continuously_differentiable_in_time(entry):
     assert np.abs(np.diff(rate)).max() < steepest * step * 1.01
 
 
-# -- geometry ---------------------------------------------------------------------------------------------------------
+# -- geometry ---------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["paper_main", "giant_slalom"])
@@ -148,7 +148,7 @@ def test_left_and_right_runs_mirror_each_other(entry, half):
     assert left.phase[first] == LEFT and left.curvature[first] > 0
 
 
-# -- speed ------------------------------------------------------------------------------------------------------------
+# -- speed ---------------------------------------------
 
 
 def planned_speed(run) -> np.ndarray:

@@ -45,7 +45,7 @@ def chest_lean(run) -> np.ndarray:
     return np.arctan2(dot(up, left_of(run.plan)), dot(up, run.plan.surface_normal))
 
 
-# -- balance ----------------------------------------------------------------------------------------------------------
+# -- balance ---------------------------------------------
 
 
 @pytest.mark.parametrize(("name", "changes"), CASES, ids=IDS)
@@ -113,7 +113,7 @@ def test_speed_time_and_acceleration_belong_together():
     assert plan.time[0] == 0.0 and plan.duration == plan.time[-1] and plan.length == plan.arc_length[-1]
 
 
-# -- poses ------------------------------------------------------------------------------------------------------------
+# -- poses ---------------------------------------------
 
 
 @pytest.mark.parametrize(("name", "changes"), CASES, ids=IDS)
@@ -190,7 +190,7 @@ def test_arrays_of_a_plan_are_read_only():
         planned("paper_main", MAIN).plan.pose[0, 0] = 0.0
 
 
-# -- what the papers claim --------------------------------------------------------------------------------------------
+# -- what the papers claim ---------------------------------------------
 
 
 def test_claim_19_leans_inward_in_every_turn_and_the_upper_body_outward():

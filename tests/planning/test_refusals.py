@@ -18,7 +18,8 @@ EVEN = {
     "course.turn_duration": 1.0,
     "technique.inclination_max_deg": 30,
 }
-"""One turn on nearly flat frictionless ground: the speed stays what it is, so what works in one place works everywhere."""
+"""One turn on nearly flat frictionless ground at an even speed: what works in one place works everywhere."""
+ONE_PLACE_ONLY = pytest.mark.xfail(strict=True, reason="the speed holds for one place of the turn only")
 SHORT = {"course.turn_count": 2}
 
 
@@ -58,12 +59,8 @@ def test_flat_frictionless_ground_needs_lean_too():
     [
         (9, 25),
         (16, 55),
-        pytest.param(
-            9, 10, marks=pytest.mark.xfail(strict=True, reason="the speed holds for one place of the turn only")
-        ),
-        pytest.param(
-            12, 20, marks=pytest.mark.xfail(strict=True, reason="the speed holds for one place of the turn only")
-        ),
+        pytest.param(9, 10, marks=ONE_PLACE_ONLY),
+        pytest.param(12, 20, marks=ONE_PLACE_ONLY),
     ],
 )
 def test_printed_speed_works_at_the_start_of_a_braking_run(start, limit):
