@@ -99,6 +99,7 @@ class SKI_OT_simulate(bpy.types.Operator):
             return {"CANCELLED"}
         with reported(self):
             settings.recording = save_recording(recording, context.scene)
+        settings.bake_hash = ""  # what is baked is of another recording now
         finished = recording.status == "finished"
         tell(settings, "simulation", self._spec, recording_lines(recording), failed=not finished)
         self.report({"INFO"} if finished else {"WARNING"}, ending(recording))

@@ -54,7 +54,7 @@ def _number_properties(info: FieldInfo, value: Any, common: dict[str, str]) -> d
         max=float(info.high or 0.0) * scale,
         unit=UNITS.get(info.unit, "NONE"),
         subtype="ANGLE" if info.unit == "deg" else "NONE",
-        precision=1 if span > 20 else 2 if span > 0.3 else 4,
+        precision=3 if info.unit in UNITS or span < 0.1 else 2,  # a number with a unit is shown without zeros behind it
         step=100 if span > 20 else 10 if span > 2 else 1,
         **common,
     )

@@ -41,9 +41,10 @@ def simulation_job(spec: RunSpec) -> Job:
 
     Raises `PlanInfeasible` or `SpecError` on the first step.
     """
+    stop = yield 0.0, "Planning"  # before anything that may fail or take long
+
     from ..pipeline import make_plan, start_simulation
 
-    stop = yield 0.0, "Planning"
     planned = make_plan(spec)
     simulation = start_simulation(planned)
     while not stop and simulation.advance(STEPS):

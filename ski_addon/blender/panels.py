@@ -134,7 +134,7 @@ def _draw_result(layout: Any, settings: Any, stage: str, run_hash: str, columns:
     failed = getattr(settings, f"{stage}_failed")
     box = layout.box().column(align=True)
     if getattr(settings, f"{stage}_hash") != run_hash:
-        box.label(text="Of earlier settings:", icon="TIME")
+        box.label(text="From before the last change:", icon="TIME")
         box = box.column(align=True)
         box.active = False
     first = True

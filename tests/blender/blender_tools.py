@@ -56,3 +56,45 @@ def keys(curve: Any) -> np.ndarray:
     values = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
     curve.keyframe_points.foreach_get("co", values)
     return values.reshape(-1, 2)
+
+
+class Event:
+    """What a modal operator looks at."""
+
+    def __init__(self, kind: str, value: str = "NOTHING") -> None:
+        self.type, self.value = kind, value
+
+
+class WindowManager:
+    """Stands for the window manager of a Blender with a window; `open` is what has not been taken away yet."""
+
+    def __init__(self) -> None:
+        self.windows: list[Any] = []
+        self.open: list[str] = []
+
+    def event_timer_add(self, _step: float, window: object) -> str:
+        self.open.append("timer")
+        return "timer"
+
+    def event_timer_remove(self, timer: str) -> None:
+        self.open.remove(timer)
+
+    def progress_begin(self, _low: int, _high: int) -> None:
+        self.open.append("progress")
+
+    def progress_update(self, _value: int) -> None:
+        pass
+
+    def progress_end(self) -> None:
+        self.open.remove("progress")
+
+
+class Context:
+    """Stands for the context of a Blender with a window."""
+
+    window = None
+    workspace: Any = None
+
+    def __init__(self, scene: Any = None) -> None:
+        self.scene = scene
+        self.window_manager = WindowManager()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.blender.blender_tools import Context
+
 
 @pytest.fixture
 def spec(core, extension):
@@ -51,47 +53,6 @@ def test_an_infeasible_run_fails_on_the_first_slice(core, spec, jobs) -> None:
     next(job)
     with pytest.raises(core("errors").PlanInfeasible):
         next(job)
-
-
-class Event:
-    """What a modal operator looks at."""
-
-    def __init__(self, kind: str, value: str = "NOTHING") -> None:
-        self.type, self.value = kind, value
-
-
-class WindowManager:
-    """Stands for the window manager of a Blender with a window."""
-
-    def __init__(self) -> None:
-        self.windows: list = []
-        self.open: list[str] = []
-
-    def event_timer_add(self, _step: float, window: object) -> str:
-        self.open.append("timer")
-        return "timer"
-
-    def event_timer_remove(self, timer: str) -> None:
-        self.open.remove(timer)
-
-    def progress_begin(self, _low: int, _high: int) -> None:
-        self.open.append("progress")
-
-    def progress_update(self, _value: int) -> None:
-        pass
-
-    def progress_end(self) -> None:
-        self.open.remove("progress")
-
-
-class Context:
-    """Stands for the context of a Blender with a window."""
-
-    window = None
-    workspace = None
-
-    def __init__(self) -> None:
-        self.window_manager = WindowManager()
 
 
 def test_a_runner_cleans_up_and_has_the_recording(spec, jobs) -> None:

@@ -172,6 +172,16 @@ def test_bake_shows_the_run_that_was_simulated(ski) -> None:
     assert ski.bake_hash == ski.simulation_hash
 
 
+def test_a_bake_is_old_after_another_simulation(ski) -> None:
+    import bpy
+
+    bpy.ops.ski.simulate()
+    bpy.ops.ski.bake()
+    assert ski.bake_hash == ski.simulation_hash
+    bpy.ops.ski.simulate()
+    assert ski.bake_hash != ski.simulation_hash
+
+
 def test_resetting_goes_back_to_the_preset(core, scene, ski) -> None:
     import bpy
 
