@@ -18,9 +18,10 @@ def atomic_path(target: str | Path) -> Iterator[Path]:
     Whatever goes wrong, the temporary file is removed and `target` keeps what it held. Raises `OutputError`.
     """
     target = Path(target)
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}.tmp{target.suffix}")
     if target.is_dir():
         raise OutputError(target, "it is a folder")
+    # The start of the name is enough: the whole one and more would be too long where the name itself just fits.
+    temporary = target.with_name(f".{target.stem[:40]}.{os.getpid()}.tmp{target.suffix}")
     try:
         yield temporary
         os.replace(temporary, target)

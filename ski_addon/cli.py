@@ -13,7 +13,7 @@ from types import FrameType
 from typing import NoReturn, TypeAlias
 
 from . import __version__, commands
-from .errors import Cancelled, SkiAddonError, one_line
+from .errors import Cancelled, SkiAddonError, one_line, show_path
 
 TRACEBACK_VARIABLE = "SKI_ADDON_TRACEBACK"
 """Environment variable that adds the traceback to an unexpected failure."""
@@ -69,7 +69,7 @@ def main(argv: Sequence[str] | None = None, prog: str = "python -m ski_addon") -
             sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - lives until exit
             return 0
         except OSError as error:
-            return _fail(f"{error.filename or 'input or output'}: {error.strerror or error}", 3)
+            return _fail(f"{show_path(error.filename or 'input or output')}: {error.strerror or error}", 3)
         except MemoryError:
             return _fail("not enough memory: shorten the course", 3)
         except Exception as error:

@@ -16,8 +16,20 @@ def one_line(text: object, limit: int = 400) -> str:
 
 def show_value(value: object) -> str:
     """Return a short one-line form of a value for a message (strings quoted, at most 60 characters)."""
-    shown = repr(value) if not isinstance(value, str) else f'"{value}"'
-    return one_line(shown, 60)
+    if isinstance(value, str):
+        return one_line(f'"{value}"', 60)
+    try:
+        return one_line(repr(value), 60)
+    except ValueError:  # Python does not write out whole numbers of thousands of digits
+        return "a huge number"
+    except RecursionError:
+        return "a deeply nested value"
+
+
+def show_path(path: object) -> str:
+    """Return a path for a message; of a very long one its end, so that the rest of the line is not cut off."""
+    shown = str(path)
+    return shown if len(shown) <= 200 else "..." + shown[-197:]
 
 
 class SkiAddonError(Exception):
@@ -55,7 +67,7 @@ class SpecError(SkiAddonError):
         """Return the same error naming the document it was found in (for instance `run.toml line 7`)."""
         named = SpecError(self.field, self.value, self.allowed, self.hint, problem=self.problem)
         named.source = source
-        named.args = (one_line(f"{source}: {self.args[0]}"),)
+        named.args = (one_line(f"{show_path(source)}: {self.args[0]}"),)
         return named
 
 
@@ -80,7 +92,7 @@ class MissingInputError(SkiAddonError):
     def __init__(self, what: object, reason: str = "there is no such file") -> None:
         self.what = str(what)
         self.reason = reason
-        super().__init__(f"cannot read {self.what}: {reason}")
+        super().__init__(f"cannot read {show_path(what)}: {reason}")
 
 
 class RecordingError(SkiAddonError):
@@ -91,7 +103,7 @@ class RecordingError(SkiAddonError):
     def __init__(self, path: str | Path, reason: str) -> None:
         self.path = Path(path)
         self.reason = reason
-        super().__init__(f"cannot read the recording {path}: {reason}")
+        super().__init__(f"cannot read the recording {show_path(path)}: {reason}")
 
 
 class OutputError(SkiAddonError):
@@ -102,7 +114,7 @@ class OutputError(SkiAddonError):
     def __init__(self, path: str | Path, reason: str) -> None:
         self.path = Path(path)
         self.reason = reason
-        super().__init__(f"cannot write {path}: {reason}")
+        super().__init__(f"cannot write {show_path(path)}: {reason}")
 
 
 class MissingLibraryError(SkiAddonError):

@@ -34,8 +34,7 @@ class Talk:
     def say(self, line: str) -> None:
         """Say one line for a person."""
         if not (self.json or self.quiet):
-            sys.stdout.write(line + "\n")
-            sys.stdout.flush()
+            write_line(sys.stdout, line)
 
     def give(self, result: object) -> None:
         """Give the machine-readable result."""
@@ -53,6 +52,13 @@ class Talk:
         if sys.stderr.isatty():
             return sys.stderr
         return None if self.json else sys.stdout
+
+
+def write_line(stream: TextIO, line: str) -> None:
+    """Write a line; letters that the stream's encoding does not have are written as their codes."""
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    stream.write(line.encode(encoding, "backslashreplace").decode(encoding) + "\n")
+    stream.flush()
 
 
 def summary_lines(summary: Mapping[str, Any]) -> list[str]:

@@ -60,3 +60,40 @@ def test_long_or_broken_values_stay_on_one_short_line():
     error = errors.SpecError("a", "x\n" * 500, "1..2", "y")
     assert "\n" not in str(error) and len(str(error)) < 120
     assert len(errors.one_line("z" * 9999)) == 400
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (10**5000, "a huge number"),
+        (-(16**9000), "a huge number"),
+        (10**70, "1" + "0" * 56 + "..."),
+        ("a\tb\n", '"a b "'),
+        ({"x": [1, 2]}, "{'x': [1, 2]}"),
+        (b"\xff", r"b'\xff'"),
+    ],
+)
+def test_any_value_has_a_short_form(value, shown):
+    assert errors.show_value(value) == shown
+
+
+def test_deeply_nested_value_has_a_short_form():
+    nested: list = []
+    for _ in range(100_000):
+        nested = [nested]
+    assert errors.show_value(nested) == "a deeply nested value"
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        lambda path: errors.MissingInputError(path, "what was wrong"),
+        lambda path: errors.RecordingError(path, "what was wrong"),
+        lambda path: errors.OutputError(path, "what was wrong"),
+        lambda path: errors.SpecError("a.b", 1.0, "3..200 m", "what was wrong").in_source(path),
+    ],
+)
+def test_very_long_path_does_not_cut_off_what_was_wrong(error):
+    line = str(error("/deep" * 200 + "/file.toml"))
+    assert line.endswith("what was wrong") and "deep/file.toml: " in line and len(line) < 400
+    assert str(error("short.toml")).count("...") == 0

@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import MissingInputError, SpecError
+from ..errors import MissingInputError, SpecError, show_path
 
 SIZE_MAX = 1_000_000
 """A run document larger than this [bytes] is not one."""
 WANTED = "give a run document, for instance one of presets/runs"
+_MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:["']?[\w-]++["']?\.){30}""")
+"""A key of more than 30 parts: reading thousands of them would take Python's reader minutes."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,8 @@ class SourceDocument:
             yield
         except SpecError as error:
             line = find_line(self.text, error.field)
-            raise error.in_source(f"{self.source} line {line}" if line else self.source) from None
+            source = show_path(self.source)
+            raise error.in_source(f"{source} line {line}" if line else source) from None
 
 
 def read_text(path: Path) -> str:
@@ -48,19 +51,21 @@ def read_text(path: Path) -> str:
     except (OSError, ValueError) as error:
         raise MissingInputError(path, getattr(error, "strerror", None) or str(error)) from None
     if len(raw) > SIZE_MAX:
-        raise SpecError(str(path), problem="is too large to be a run document", hint=WANTED)
+        raise SpecError(show_path(path), problem="is too large to be a run document", hint=WANTED)
     try:
         return raw.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError:
-        raise SpecError(str(path), problem="is not a text file", hint=WANTED) from None
+        raise SpecError(show_path(path), problem="is not a text file", hint=WANTED) from None
 
 
 def parse_document(text: str, source: str) -> SourceDocument:
     """Parse TOML text; raises `SpecError` naming the source and the line if it is not TOML."""
+    if _MANY_DOTS.search(text):
+        raise SpecError(show_path(source), problem="has a key of more than 30 parts", hint=WANTED)
     try:
         return SourceDocument(source, text, tomllib.loads(text))
     except (ValueError, RecursionError) as error:
-        raise SpecError(source, problem="is not valid TOML", hint=str(error)) from None
+        raise SpecError(show_path(source), problem="is not valid TOML", hint=str(error)) from None
 
 
 def write_document(content: Mapping[str, Any]) -> str:
@@ -76,7 +81,7 @@ def find_line(text: str, key: str) -> int | None:
     """Return the line number (from 1) on which a dotted key or "[section]" stands in a document, or None."""
     section, _, name = key.rpartition(".")
     here = ""
-    for count, line in enumerate(text.splitlines(), start=1):
+    for count, line in enumerate(text.split("\n"), start=1):
         header = re.match(r"\s*\[\s*([\w.-]+)\s*\]", line)
         here = header.group(1) if header else here
         if header and key == f"[{here}]":

@@ -57,7 +57,7 @@ def find_document(name: str, kinds: tuple[str, ...] = ("runs",)) -> Path:
         raise MissingInputError(name, f"there are several presets of that name: say {' or '.join(clashes)}")
     if path.exists():
         return path
-    near = difflib.get_close_matches(name, known, n=1)
+    near = difflib.get_close_matches(name[:100], known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"presets are {', '.join(sorted(k for k in known if '/' not in k))}"
     raise MissingInputError(name, f"there is no such file or preset: {hint}")
 

@@ -56,6 +56,7 @@ def find_field(key: str) -> FieldInfo:
 
 def nearest_key(key: str) -> str:
     """Return the valid dotted key most like `key`; the same name in another section comes first."""
+    key = key[:100]  # comparing takes time in proportion to the square of the length
     section, _, name = key.rpartition(".")
 
     def likeness(info: FieldInfo) -> float:
@@ -74,8 +75,8 @@ def flattened(content: Mapping[str, Any]) -> dict[str, Any]:
             if not isinstance(value, Mapping):
                 raise SpecError(key, value, problem="is not a table", hint=f"write its keys under [{key}]")
             flat |= {f"{key}.{name}": inner for name, inner in value.items()}
-        elif isinstance(value, Mapping):
-            nearest = difflib.get_close_matches(key, SECTIONS, n=1, cutoff=0.0)[0]
+        elif isinstance(value, Mapping) and key not in field_table():
+            nearest = difflib.get_close_matches(key[:100], SECTIONS, n=1, cutoff=0.0)[0]
             raise SpecError(f"[{key}]", problem="is not a section of a run", hint=f"did you mean [{nearest}]?")
         else:
             flat[key] = value

@@ -24,7 +24,7 @@ def check(info: FieldInfo, value: object, spec: RunSpec | None = None) -> None:
             raise SpecError(info.key, value, info.allowed, "choose one of these", problem="is not one of")
     elif info.kind == TEXT:
         _check_text(info, value)
-    elif not (info.word and value == info.word):
+    elif not (info.word and isinstance(value, str) and value == info.word):
         _check_number(info, value, spec)
 
 
