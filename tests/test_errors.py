@@ -72,6 +72,7 @@ def test_long_or_broken_values_stay_on_one_short_line():
         ({"x": [1, 2]}, "{'x': [1, 2]}"),
         (b"\xff", r"b'\xff'"),
     ],
+    ids=("huge", "huge negative", "long", "text", "table", "bytes"),
 )
 def test_any_value_has_a_short_form(value, shown):
     assert errors.show_value(value) == shown

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,7 +45,7 @@ def find_document(name: str, kinds: tuple[str, ...] = ("runs",)) -> Path:
     `MissingInputError` with the nearest one.
     """
     path = Path(name)
-    if path.suffix or path.is_file():
+    if path.suffix or os.path.isfile(path):  # which also knows names that are too long for a file
         return path  # reading it says what is wrong with it
     known = {preset.stem: preset for preset in _preset_paths(kinds)}
     known |= {f"{preset.parent.name}/{preset.stem}": preset for preset in _preset_paths(kinds)}
@@ -55,7 +56,7 @@ def find_document(name: str, kinds: tuple[str, ...] = ("runs",)) -> Path:
         return known[name]
     if clashes:
         raise MissingInputError(name, f"there are several presets of that name: say {' or '.join(clashes)}")
-    if path.exists():
+    if os.path.exists(path):
         return path
     near = difflib.get_close_matches(name[:100], known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"presets are {', '.join(sorted(k for k in known if '/' not in k))}"
