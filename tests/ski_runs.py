@@ -17,8 +17,14 @@ from ski_addon.spec import RunSpec, SkierSpec
 
 PRESETS = Path(__file__).resolve().parents[1] / "presets" / "runs"
 FRICTIONLESS = {"snow.friction": 0, "snow.friction_per_speed": 0}
-MAIN = {"course.turn_count": 3}
-"""The paper's main case cut to three turns (6 s): right, left, right, from 9 m/s."""
+MAIN = {"course.turn_count": 2}
+"""The paper's main case cut to two turns (3.5 s): right, then left, from 9 m/s."""
+COARSE = {**MAIN, "simulation.time_step": 0.002}
+"""The same in steps of 2 ms: half the time to compute, twice the tracking error."""
+FAST = {**COARSE, "course.start_speed": 12}
+"""42 degrees of lean."""
+WEAK = {**FAST, "skier.strength": 0.42, "simulation.time_step": 0.004}
+"""The same with muscles that cannot do it: at their limits from the start, and a fall within two seconds."""
 
 
 def preset(name: str, changes: Mapping[str, Any] | None = None) -> RunSpec:

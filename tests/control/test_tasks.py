@@ -11,8 +11,8 @@ from ski_addon.frames import matrix_from_quaternion
 from ski_addon.planning import Reference
 from tests.ski_runs import MAIN, planned, random_configuration
 
-PLACES = (150, 260, 420, 700)
-"""Samples of the plan: in the first turn, in the first transition, in the second turn, in the second transition."""
+PLACES = (100, 260, 420, 600)
+"""Samples of the plan: in the first turn, twice in the transition, in the second turn."""
 GAINS = Gains()
 
 

@@ -117,10 +117,15 @@ def test_derivatives_are_exact_for_parabolas_on_uneven_time():
 @pytest.mark.parametrize("bend", [-0.1, 0.04])
 def test_speed_for_a_lean_is_the_way_back(bend, left):
     lean = np.deg2rad(35.0)
-    speed = speed_for_lean(lean, bend, left, G, LENGTH)
+    speed = speed_for_lean(np.sign(bend) * lean, np.array([bend]), np.array([left]), np.array([G]), LENGTH)[0]
     steady = pendulum(bend, speed, left=left)
     assert abs(steady.inclination[400]) == pytest.approx(lean, rel=1e-6)
 
 
-def test_no_speed_gives_a_lean_on_a_straight_track():
-    assert speed_for_lean(0.5, 0.0, 0.0, G, LENGTH) == 0.0
+def test_no_speed_gives_a_lean_where_the_track_does_not_bend_to_its_side():
+    bend, zero = np.array([0.0, -0.1]), np.zeros(2)
+    assert np.all(np.isinf(speed_for_lean(0.5, bend, zero, G + zero, LENGTH)))
+
+
+def test_no_speed_is_slow_enough_where_gravity_alone_leans_further():
+    assert speed_for_lean(0.1, np.array([0.1]), np.array([-5.0]), np.array([G]), LENGTH)[0] == 0.0

@@ -16,7 +16,12 @@ from tests.ski_runs import FRICTIONLESS, MAIN, mirrored_qpos, planned, simulated
 
 STRAIGHT = {"course.turn_radius": 200, "course.turn_count": 1, "course.turn_duration": 1.2, "course.start_speed": 6}
 DRAGGED = {**STRAIGHT, "skier.drag_area": 2, "course.start_speed": 20}
-QUICK = {**MAIN, "course.turn_duration": 0.5, "course.transition_duration": 0.7, "simulation.time_step": 0.002}
+QUICK = {
+    "course.turn_count": 3,
+    "course.turn_duration": 0.5,
+    "course.transition_duration": 0.7,
+    "simulation.time_step": 0.002,
+}
 TURNS = [("friction", MAIN), ("drag", {"course.turn_count": 1, "skier.drag_area": 2, "course.start_speed": 12})]
 
 
@@ -82,7 +87,7 @@ def test_torques_are_the_inverse_dynamics_of_the_recorded_motion():
     upper = [i for i, joint in enumerate(model.skeleton.actuated) if "." not in model.skeleton.joint_names[joint]] + [
         i for i, joint in enumerate(model.skeleton.actuated) if "arm" in model.skeleton.joint_names[joint]
     ]
-    for i in range(50, 6000, 450):
+    for i in range(50, 3500, 250):
         data.qpos[:], data.qvel[:] = recording.qpos[i], recording.qvel[i]
         data.qacc[:] = (recording.qvel[i + 1] - recording.qvel[i]) / step
         mujoco.mj_inverse(model.mujoco, data)
@@ -128,7 +133,7 @@ def test_claim_27_edges_that_carry():
     for ski in range(2):
         left = recording.edge_angle[:, ski] > np.deg2rad(8.0)
         right = recording.edge_angle[:, ski] < -np.deg2rad(8.0)
-        assert left.sum() > 1000 and right.sum() > 1000
+        assert left.sum() > 500 and right.sum() > 500
         assert np.abs(recording.snow_edge_force[left, ski, 1]).max() < 0.05
         assert np.abs(recording.snow_edge_force[right, ski, 0]).max() < 0.05
         assert recording.snow_edge_side[left, ski, 0].min() > -0.05, "snow pushes a ski towards its lean"

@@ -1,0 +1,6 @@
+"""The papers' cases. Importing this package keeps numeric libraries to one thread, as `make test` does."""
+
+import os
+
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
