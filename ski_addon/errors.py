@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 
@@ -80,7 +81,7 @@ class PlanInfeasible(SkiAddonError):  # noqa: N818 - the name says what happened
         self.place = place
         self.speed = speed
         self.reason = reason
-        remedy = "" if speed is None else f"; a speed of {speed:.1f} m/s there would work"
+        remedy = "" if speed is None else f"; a speed of {math.floor(10 * speed) / 10:.1f} m/s there would work"
         super().__init__(f"the track cannot be skied at {place}: {reason}{remedy}")
 
 

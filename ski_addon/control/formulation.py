@@ -142,9 +142,9 @@ class Formulation:
         self._snow_rows = slice(n + hinges, self.rows)
         weight = model.mass * 9.81 / FORCE_UNIT
         self._normal_cap = FORCE_LIMIT_WEIGHTS * weight
-        shear = EDGE_SHEAR_RATIO * weight
+        self._shear_cap = EDGE_SHEAR_RATIO * weight
+        self._grip = self.snow.shear_limit / FORCE_UNIT / self.segments
         self._lifting_cap = LIFTING_EDGE_WEIGHTS * weight / self.segments
-        self._shear_cap = min(shear, self.snow.shear_limit / FORCE_UNIT / self.segments)
 
     # -- build, each step --------------------------------------------------------------------------------------------
 
@@ -227,20 +227,18 @@ class Formulation:
         lower = self._lower[self._snow_rows].reshape(2, 2, 2, segments)  # ski, normal or side, left or right edge
         upper = self._upper[self._snow_rows].reshape(2, 2, 2, segments)
         for ski, angle in enumerate(edge_angle.tolist()):
-            for edge, bearing in enumerate(edge_bearing(angle)):
-                normal, side = self._caps(bearing)
-                upper[ski, 0, edge] = normal
-                # an edge can be pushed across the ski from its outer side only; a flat ski's either way
-                lifting = self._caps(min(edge_bearing(angle)))[1]
-                upper[ski, 1, edge] = side if edge == 0 else min(side, lifting)
-                lower[ski, 1, edge] = -side if edge == 1 else -min(side, lifting)
-
-    def _caps(self, bearing: float) -> tuple[float, float]:
-        """Return the most normal and side force at a point of an edge that bears by `bearing`, 0..1."""
-        if bearing >= 1.0:
-            return self._normal_cap, self._shear_cap
-        lifting = bearing * self._lifting_cap
-        return lifting, min(lifting, self._shear_cap)
+            bearing = edge_bearing(angle)
+            lifted = min(bearing)
+            # the ski's grip is shared by its edges; an edge is pushed across the ski from its outer side only, but
+            # while the other edge still bears the ski is flat and can be pushed both ways
+            grip = self._grip / (1.0 + lifted)
+            most = min(self._shear_cap, grip)
+            slight = most if lifted == 1.0 else min(self._lifting_cap, grip) * lifted
+            for edge in range(2):
+                upper[ski, 0, edge] = self._normal_cap if bearing[edge] == 1.0 else bearing[edge] * self._lifting_cap
+                side = most if bearing[edge] == 1.0 else slight
+                upper[ski, 1, edge] = side if edge == 0 else slight
+                lower[ski, 1, edge] = -side if edge == 1 else -slight
 
     # -- read a solution ---------------------------------------------------------------------------------------------
 

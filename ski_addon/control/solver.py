@@ -6,12 +6,15 @@ scaling, which would be redone at every update, stays off.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from .formulation import Formulation, Problem
 
+NOT_A_NUMBER = -99
+"""Our status for a program that holds something else than finite numbers."""
 SOLVED = 1
 """OSQP's status value for a solution within tolerance."""
 TOLERANCE = 1e-5
@@ -106,8 +109,10 @@ class OsqpSolver:
         if info.rho_updates:
             solver.update_rho(STEP_SIZE)
         unknowns = np.array(solver.solution.x)
-        if status != 0 and not np.all(np.isfinite(unknowns)):  # OSQP gives no point when it proves infeasibility
+        if not math.isfinite(float(unknowns.sum()) + float(gradient.sum())):
+            # OSQP gives no point when it proves infeasibility, and calls a program without numbers solved
             unknowns = self._zero[0].copy()
+            status = status or NOT_A_NUMBER
         return Solution(unknowns, int(info.iter), status, attempt)
 
     def _limit_iterations(self, most: int) -> None:

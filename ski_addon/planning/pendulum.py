@@ -125,10 +125,16 @@ def second_derivative(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.concatenate((inner[:1], inner, inner[-1:]))
 
 
-def speed_for_lean(lean: float, curvature: float, gravity_left: float, gravity_normal: float, length: float) -> float:
-    """Return the speed [m/s] at which a steady turn of `curvature` [1/m] needs `lean` [rad]; 0 if none does."""
-    side = np.sign(curvature) or 1.0
-    y = length * np.sin(lean) * side
-    omega2 = gravity_normal / (length * np.cos(lean))
-    squared = (gravity_left + omega2 * y) / (curvature - curvature**2 * y) if curvature else 0.0
-    return float(np.sqrt(max(squared, 0.0)))
+def speed_for_lean(
+    lean: float, curvature: np.ndarray, gravity_left: np.ndarray, gravity_normal: np.ndarray, length: float
+) -> np.ndarray:
+    """Return the speeds (n,) [m/s] at which steady turns of `curvature` (n,) [1/m] need `lean` [rad], positive left.
+
+    0 where gravity alone already asks for more, infinite where the track does not bend to the side of the lean.
+    """
+    y = length * np.sin(lean)
+    pull = gravity_left + gravity_normal / (length * np.cos(lean)) * y
+    bend = curvature - curvature**2 * y
+    to_side = bend * np.sign(lean) > 1e-9
+    squared = np.where(to_side, pull / np.where(to_side, bend, 1.0), np.inf)
+    return np.sqrt(np.maximum(squared, 0.0))

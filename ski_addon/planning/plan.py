@@ -89,6 +89,7 @@ def plan_motion(spec: RunSpec, track: Track, terrain: Terrain, model: SkierModel
     time, speed, pendulum = _balance(spec, track, stance, gravity)
     if spec.technique.inclination:
         _check_lean(spec, track, time, speed, pendulum, gravity, stance)
+        _check_load(spec, track, time, pendulum, gravity)
     else:
         pendulum = _upright(track, stance, gravity)
     frames = track_frames(track.tangent, track.surface_normal)
@@ -125,14 +126,14 @@ def _balance(spec: RunSpec, track: Track, stance: Stance, gravity: _Gravity) -> 
     snow = Snow.of(spec.snow, spec.skier)
     pendulum = _upright(track, stance, gravity)
     speed = np.full_like(track.arc_length, track.start_speed)
-    for _ in range(25):
+    for attempt in range(25):
         planned = plan_speed(track.arc_length, track.curvature, gravity.along, pendulum, snow, track.start_speed)
         if planned[-1] <= 0.0:
             raise _stopped(track, int(np.argmin(planned > 0.0)))
         change = float(np.max(np.abs(planned - speed)))
         speed = planned
         time = travel_time(track.arc_length, speed)
-        if change < 1e-6 or not spec.technique.inclination:
+        if (change < 1e-6 and attempt) or not spec.technique.inclination:
             break
         pendulum = balanced_pendulum(
             time,
@@ -190,15 +191,29 @@ def _check_lean(
     worst = int(np.argmax(lean))
     if lean[worst] <= most:
         return
-    bend = float(track.curvature[np.argmax(np.abs(track.curvature))]) * np.sign(pendulum.y[worst])
-    bend = abs(bend) * np.sign(pendulum.y[worst])
-    works = speed_for_lean(most, bend, float(gravity.left[worst]), float(gravity.into[worst]), stance.height)
+    same_turn = track.turn == track.turn[worst]
+    allowed = speed_for_lean(
+        most * np.sign(pendulum.y[worst]), track.curvature, gravity.left, gravity.into, stance.height
+    )
+    works = speed[worst] * float(np.min((allowed / speed)[same_turn]))
+    needed = np.ceil(10 * np.rad2deg(lean[worst])) / 10
     reason = (
-        f"at {speed[worst]:.1f} m/s it needs {np.rad2deg(lean[worst]):.0f} degrees of lean, more than "
+        f"at {speed[worst]:.1f} m/s it needs {needed:.1f} degrees of lean, more than "
         f"technique.inclination_max_deg = {spec.technique.inclination_max_deg:g} (use a larger radius, a gentler slope "
         "or a lower start speed)"
     )
     raise PlanInfeasible(_place(track, time, worst), works, reason)
+
+
+def _check_load(spec: RunSpec, track: Track, time: np.ndarray, pendulum: Pendulum, gravity: _Gravity) -> None:
+    load = pendulum.normal / gravity.into
+    worst = int(np.argmin(load))
+    if load[worst] < spec.technique.load_min - 0.01:
+        reason = (
+            f"only {load[worst]:.2f} of the skier's weight would stay on the snow, less than technique.load_min = "
+            f"{spec.technique.load_min:g} (use longer transitions, a larger radius or a lower speed)"
+        )
+        raise PlanInfeasible(_place(track, time, worst), None, reason)
 
 
 def _check_reach(track: Track, time: np.ndarray, poses: PlannedPoses) -> None:

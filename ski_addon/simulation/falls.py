@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -62,8 +63,6 @@ class FallWatch:
     def check(self, time: float, progress: float, command: Command, ski_error: float) -> Fall | None:
         """Return the fall that has happened at this state, or None."""
         dynamics = self._dynamics
-        if not (np.all(np.isfinite(dynamics.qpos)) and np.all(np.isfinite(dynamics.qvel))):
-            return Fall("diverged", time, "the state is no longer a number", progress, self._why(time, command))
         normal = self._terrain.normal(dynamics.com[0], dynamics.com[1])
         what = self._what(normal, ski_error)
         if what is not None:
@@ -71,7 +70,16 @@ class FallWatch:
         if command.rate < STALLED:
             why = "friction and slope no longer carry it forward"
             return Fall("fell", time, "the skier came to a stop", progress, why)
+        if command.solution.status != 0:
+            return Fall("fell", time, "the skier lost control", progress, self._why(time, command))
         return None
+
+    def divergence(self, time: float, progress: float) -> Fall | None:
+        """Return the end of a run whose state is no longer made of finite numbers, or None."""
+        dynamics = self._dynamics
+        if math.isfinite(float(dynamics.qpos.sum()) + float(dynamics.qvel.sum())):
+            return None
+        return Fall("diverged", time, "the state is no longer a number", progress, "the step before it went too far")
 
     def _what(self, normal: np.ndarray, ski_error: float) -> str | None:
         dynamics, height = self._dynamics, self._height

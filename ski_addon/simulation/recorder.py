@@ -6,43 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .recording import Recording
-
-SHAPES: dict[str, tuple[int, ...]] = {
-    "time": (),
-    "arc_length": (),
-    "speed": (),
-    "qpos": (42,),
-    "qvel": (41,),
-    "tau": (31,),
-    "snow_force": (2, 3),
-    "snow_edge_force": (2, 2),
-    "snow_edge_side": (2, 2),
-    "inclination": (),
-    "edge_angle": (2,),
-    "edge_angle_reference": (2,),
-    "com": (3,),
-    "com_reference": (3,),
-    "ski_error": (),
-    "com_error": (),
-    "turn_phase": (),
-    "curvature": (),
-    "track_position": (3,),
-    "track_tangent": (3,),
-    "surface_normal": (3,),
-    "root_residual": (),
-    "torque_ratio": (31,),
-    "joint_margin": (),
-}
-"""Real numbers recorded each step, and their shapes."""
-COUNTS = {
-    "phase": np.int8,
-    "turn": np.int32,
-    "solver_iterations": np.int32,
-    "solver_status": np.int8,
-    "solver_attempts": np.int8,
-}
-"""Whole numbers recorded each step, and their types."""
+from .recording import COUNTS, SHAPES, Recording
 
 
 class Recorder:

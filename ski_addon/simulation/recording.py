@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import io
 import json
+import struct
 import zipfile
+import zlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -19,9 +21,48 @@ from ..errors import RecordingError
 
 FORMAT = "ski-addon-recording"
 FORMAT_VERSION = 1
+DAMAGE = (OSError, ValueError, EOFError, RuntimeError, MemoryError, OverflowError, struct.error, zlib.error)
+"""What zipfile and numpy raise on damaged files."""
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 LARGEST_BYTES = 16 * 2**30
 """A recording that unpacks to more than this is not read."""
+
+
+SHAPES: dict[str, tuple[int, ...]] = {
+    "time": (),
+    "arc_length": (),
+    "speed": (),
+    "qpos": (42,),
+    "qvel": (41,),
+    "tau": (31,),
+    "snow_force": (2, 3),
+    "snow_edge_force": (2, 2),
+    "snow_edge_side": (2, 2),
+    "inclination": (),
+    "edge_angle": (2,),
+    "edge_angle_reference": (2,),
+    "com": (3,),
+    "com_reference": (3,),
+    "ski_error": (),
+    "com_error": (),
+    "turn_phase": (),
+    "curvature": (),
+    "track_position": (3,),
+    "track_tangent": (3,),
+    "surface_normal": (3,),
+    "root_residual": (),
+    "torque_ratio": (31,),
+    "joint_margin": (),
+}
+"""Real numbers recorded each step, and their shapes."""
+COUNTS = {
+    "phase": np.int8,
+    "turn": np.int32,
+    "solver_iterations": np.int32,
+    "solver_status": np.int8,
+    "solver_attempts": np.int8,
+}
+"""Whole numbers recorded each step, and their types."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +155,7 @@ class Recording:
                 arrays = {name: members[name] for name in array_names()}
         except KeyError as missing:
             raise RecordingError(source, f"it lacks {missing}; simulate again") from None
-        except (OSError, ValueError, EOFError, zipfile.BadZipFile) as problem:
+        except (*DAMAGE, zipfile.BadZipFile) as problem:
             raise RecordingError(source, f"it is truncated or not a recording ({problem})") from None
         _check_shapes(source, arrays)
         return cls(header, **arrays)
@@ -144,9 +185,10 @@ def _read_header(source: Path, members: Any) -> dict[str, Any]:
 
 
 def _check_shapes(source: Path, arrays: dict[str, np.ndarray]) -> None:
-    count = len(arrays["time"])
+    count = arrays["time"].size
     for name, array in arrays.items():
-        if array.ndim == 0 or len(array) != count:
-            raise RecordingError(source, f"{name} has {array.shape} entries instead of {count}; simulate again")
+        expected = (count, *SHAPES.get(name, ()))
+        if array.shape != expected:
+            raise RecordingError(source, f"{name} has the shape {array.shape} instead of {expected}; simulate again")
         if array.dtype.kind not in "fiu":
             raise RecordingError(source, f"{name} does not hold numbers")

@@ -81,6 +81,9 @@ class Simulation:
     def step(self) -> None:
         """Make one step: dynamics, control, record, integrate."""
         dynamics, now = self.dynamics, self.step_done * self.time_step
+        self.fall = self._watch.divergence(now, self.progress)
+        if self.fall is not None:
+            return
         dynamics.update()
         command = self.controller.step(self.progress)
         ratio = np.maximum(command.torque / self.model.torque_upper, command.torque / self.model.torque_lower)
@@ -88,9 +91,9 @@ class Simulation:
         ski_error = self._ski_error()
         if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
             self.fall = self._watch.check(now, self.progress, command, ski_error)
-            if self.fall is not None and self.fall.status == "diverged":
-                return
         self._record(now, command, ratio, ski_error)
+        if self.fall is not None:
+            return
         dynamics.integrate(dynamics.accelerations(command.torque, command.snow), self.time_step)
         self.progress += command.rate * self.time_step
         self.step_done += 1
