@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -61,6 +63,27 @@ def test_the_zip_never_carries(name: str) -> None:
 @pytest.mark.parametrize("script", [".ci/run", ".ci/find-python", ".ci/blender-env", ".ci/bpy-run", ".ci/types"])
 def test_scripts_can_be_run(script: str) -> None:
     assert os.access(ROOT / script, os.X_OK)
+
+
+def find_python(*versions: str) -> subprocess.CompletedProcess:
+    command = [str(ROOT / ".ci" / "find-python"), *versions]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_a_python_that_fits_blender_is_found() -> None:
+    this = f"{sys.version_info[0]}.{sys.version_info[1]}"
+    done = find_python(this)
+    assert done.returncode == 0, done.stderr
+    shown = subprocess.run([done.stdout.strip(), "--version"], capture_output=True, text=True, timeout=60, check=True)
+    assert shown.stdout.startswith(f"Python {this}.")
+
+
+def test_no_fitting_python_is_one_line_that_says_what_to_install() -> None:
+    done = find_python("3.98", "3.99")
+    assert done.returncode == 1
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert "needs Python 3.98 or 3.99" in done.stderr
 
 
 @pytest.mark.parametrize("target", ["env", "test", "demo", "build", "build-dev", "lint", "types", "clean"])

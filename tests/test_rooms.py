@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ast
+import functools
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -32,13 +32,16 @@ def core_modules() -> list[str]:
     return found
 
 
-def imports(path: str) -> Iterator[tuple[int, str]]:
+@functools.cache
+def imports(path: str) -> tuple[tuple[int, str], ...]:
     """The number of leading dots and the first name of every import in a file, inside functions too."""
+    found: list[tuple[int, str]] = []
     for node in ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from ((0, alias.name.split(".")[0]) for alias in node.names)
+            found += [(0, alias.name.split(".")[0]) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            yield node.level, (node.module or "").split(".")[0]
+            found.append((node.level, (node.module or "").split(".")[0]))
+    return tuple(found)
 
 
 def offenders(files: list[str], banned: set[str], *, relative: bool = False) -> list[str]:
