@@ -204,16 +204,17 @@ def contact_force(naive: NaiveModel, snow: Snowpack, normal: np.ndarray, forces:
 def snow_bounds(naive: NaiveModel, snow: Snowpack, edge_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Bounds of the forces: unilateral normals; side forces against the side that bears; a lifting edge fades out."""
     weight = naive.model.mass * 9.81 / FORCE_UNIT
-    grip = min(6.0 * weight, snow.shear_limit / FORCE_UNIT / snow.segments)
     lower, upper = [], []
     for angle in edge_angle:
         x = np.clip((abs(angle) - np.deg2rad(0.5)) / np.deg2rad(7.5), 0.0, 1.0)
         lifted = 1.0 - 3.0 * x**2 + 2.0 * x**3
         bearing = {"left": 1.0 if angle > 0 else lifted, "right": lifted if angle > 0 else 1.0}
-        fading = {edge: b * 0.5 * weight / snow.segments for edge, b in bearing.items() if b < 1.0}
-        normal = {edge: fading.get(edge, 6.0 * weight) for edge in bearing}
-        side = {edge: min(fading.get(edge, np.inf), grip) for edge in bearing}
-        weaker = min(side.values())
+        edges_that_bear = 1.0 + lifted  # the grip of the whole ski is shared between them
+        grip = snow.shear_limit / FORCE_UNIT / snow.segments / edges_that_bear
+        slight = 0.5 * weight / snow.segments
+        normal = {edge: 6.0 * weight if b == 1.0 else b * slight for edge, b in bearing.items()}
+        side = {edge: min(6.0 * weight, grip) if b == 1.0 else b * min(slight, grip) for edge, b in bearing.items()}
+        weaker = min(side.values()) if lifted < 1.0 else side["left"]
         for edge in ("left", "right"):
             lower += [0.0] * snow.segments
             upper += [normal[edge]] * snow.segments

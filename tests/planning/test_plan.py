@@ -75,7 +75,6 @@ def test_legs_keep_the_load_that_is_asked_in_a_fast_transition():
     np.testing.assert_array_equal(free.phase, kept.phase)
 
 
-@pytest.mark.xfail(strict=True, reason="a load_min that the legs cannot keep is neither kept nor refused")
 def test_load_that_cannot_be_kept_is_refused():
     """15 m turns at 16 m/s that change within 0.2 s: as planned, the snow would have to pull the skier down."""
     from ski_addon.errors import PlanInfeasible

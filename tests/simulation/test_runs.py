@@ -147,7 +147,6 @@ def test_state_that_is_no_number_is_a_divergence_not_a_crash():
     assert recording.header["status_detail"]["time"] <= 0.035
 
 
-@pytest.mark.xfail(strict=True, reason="up to nine more steps are recorded before the state is looked at")
 def test_diverged_recording_ends_with_its_last_real_state():
     simulation = start_simulation(planned("paper_main", SHORT))
     simulation.advance(25)
