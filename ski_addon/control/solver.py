@@ -13,6 +13,8 @@ import numpy as np
 
 from .formulation import Formulation, Problem
 
+INFEASIBLE = (3, 4, 5, 6)
+"""OSQP's status values for programs it holds to be infeasible: what it returns then is no point."""
 NOT_A_NUMBER = -99
 """Our status for a program that holds something else than finite numbers."""
 SOLVED = 1
@@ -109,8 +111,8 @@ class OsqpSolver:
         if info.rho_updates:
             solver.update_rho(STEP_SIZE)
         unknowns = np.array(solver.solution.x)
-        if not math.isfinite(float(unknowns.sum()) + float(gradient.sum())):
-            # OSQP gives no point when it proves infeasibility, and calls a program without numbers solved
+        if not math.isfinite(float(unknowns.sum()) + float(gradient.sum())) or status in INFEASIBLE:
+            # OSQP gives no point when it finds infeasibility, and calls a program without numbers solved
             unknowns = self._zero[0].copy()
             status = status or NOT_A_NUMBER
         return Solution(unknowns, int(info.iter), status, attempt)

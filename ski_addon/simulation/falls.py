@@ -18,6 +18,8 @@ LOWEST_COM = 0.18
 """Height of the centre of mass over the snow, in units of stature, below which the skier sits."""
 SKI_LEFT_TRACK = 0.4
 """Error of a ski corner [m] beyond which a ski has left its track."""
+TELLING_TIME = 0.03
+"""A hinge at its torque limit for this long [s] before a fall is named as its reason."""
 STALLED = 0.05
 """Progress along the track [m/s] below which the skier has come to a stop."""
 
@@ -99,8 +101,8 @@ class FallWatch:
         return float((point[2] - self._terrain.height(point[0], point[1])) * normal[2])
 
     def _why(self, time: float, command: Command) -> str:
-        if self._saturated_since is not None:
-            held = time - self._saturated_since
+        held = 0.0 if self._saturated_since is None else time - self._saturated_since
+        if held >= TELLING_TIME:
             return f"{self._saturated_hinge} had been at its torque limit for {held:.2f} s"
         if command.solution.status != 0:
             return "no torques and snow forces were found that follow the plan"
