@@ -1,0 +1,97 @@
+"""The benchmark of a step: what it measures is most of a step, and all of it is written."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+
+from benchmarks import step as benchmark
+from ski_addon.pipeline import make_plan, start_simulation
+from ski_addon.simulation import Simulation
+from tests.ski_runs import preset
+
+STAGES = {stage for stage, _, _ in benchmark.STAGES}
+
+
+@pytest.fixture(scope="module")
+def spec():
+    return preset("paper_main", {"course.turn_count": 1, "course.turn_duration": 0.5})
+
+
+@pytest.fixture(scope="module")
+def result(spec):
+    return benchmark.measure(spec, steps=150, warm_up=20)
+
+
+def test_every_stage_is_timed_at_every_step(result):
+    assert set(result["stages_us"]) == STAGES and result["steps"] == 150
+    for entry in (*result["stages_us"].values(), result["step_us"]):
+        assert 0.0 < entry["median"] <= entry["p99"]
+
+
+def test_stages_are_parts_of_the_step_and_most_of_it(result):
+    """Both are medians of one run on one machine: only their ratio is looked at."""
+    stages = sum(entry["median"] for entry in result["stages_us"].values())
+    assert 0.4 < stages / result["step_us"]["median"] < 1.3  # the timers take time themselves
+
+
+def test_calibration_is_positive_and_the_ratio_is_of_it(result):
+    assert benchmark.calibration(rounds=20) > 0.0
+    assert result["step_over_calibration"] == pytest.approx(result["step_us"]["median"] / result["calibration_us"])
+
+
+def test_timers_do_not_change_the_motion(spec):
+    planned = make_plan(spec)
+    plain, timed = start_simulation(planned), start_simulation(planned)
+    timer = benchmark.StageTimer(timed)
+    for simulation in (plain, timed):
+        simulation.advance(30)
+    assert plain.recording().qpos.tobytes() == timed.recording().qpos.tobytes()
+    assert set(timer.step) == STAGES
+
+
+def test_nested_stages_count_once():
+    class Clocked(benchmark.StageTimer):
+        def __init__(self):
+            self.step, self._depth = {"outer": 0.0, "inner": 0.0}, 0
+
+    timer = Clocked()
+    inner = timer._timed("inner", lambda: 1)
+    assert timer._timed("outer", lambda: inner() + 1)() == 2
+    assert timer.step["outer"] > 0.0 and timer.step["inner"] == 0.0
+    inner()
+    assert timer.step["inner"] > 0.0
+
+
+def test_failing_stage_leaves_the_timer_ready_for_the_next():
+    timer = benchmark.StageTimer.__new__(benchmark.StageTimer)
+    timer.step, timer._depth = {"a": 0.0}, 0
+
+    def fail():
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        timer._timed("a", fail)()
+    assert timer._depth == 0 and timer.step["a"] > 0.0
+
+
+def test_run_shorter_than_asked_counts_its_own_steps(spec, monkeypatch):
+    advance = Simulation.advance
+    monkeypatch.setattr(Simulation, "advance", lambda self, count: advance(self, count) and self.step_done < 40)
+    result = benchmark.measure(spec, steps=30, warm_up=25)
+    assert set(result["stages_us"]) == STAGES
+
+
+def test_command_prints_the_table_and_writes_all_numbers(spec, tmp_path, monkeypatch, capsys):
+    path, target = tmp_path / "run.toml", tmp_path / "step.json"
+    path.write_text(spec.to_toml(), encoding="utf-8")
+    monkeypatch.setattr(sys, "argv", ["step", str(path), "--steps", "20", "--json", str(target)])
+    benchmark.main()
+    said, written = capsys.readouterr().out, json.loads(target.read_text(encoding="utf-8"))
+    assert set(written) == {"steps", "stages_us", "step_us", "calibration_us", "step_over_calibration"}
+    assert set(written["stages_us"]) == STAGES and written["steps"] == 20
+    assert said.rstrip("\n") == benchmark.table(written)
+    for stage in (*STAGES, "whole step", "calibration loop"):
+        assert stage in said
