@@ -1,4 +1,4 @@
-"""The command line: one parser for `python -m ski_addon` and `blender --command ski`."""
+"""The command line: one parser for everything `python -m ski_addon` does."""
 
 from __future__ import annotations
 

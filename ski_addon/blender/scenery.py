@@ -8,7 +8,7 @@ import numpy as np
 from ..frames import Array
 from ..terrain import Terrain
 from .materials import linear_colour, new_material
-from .skier.shapes import Ring, join, stack
+from .skier.shapes import Part, Ring, join, stack
 from .slope import grid_faces, mesh_object
 
 TREE_CORRIDOR = (16.0, 70.0)
@@ -17,19 +17,23 @@ TREE_SPACING = 7.0
 MOUNTAIN_DISTANCE = 1900.0
 
 
-def build_trees(
-    terrain: Terrain, track: Array, collection: bpy.types.Collection, seed: int = 3
-) -> list[bpy.types.Object]:
-    """Return fir trees on both sides of `track` (n, 3) [m, world]; all of them share one mesh."""
-    mesh = _fir_mesh()
-    trees = []
-    for index, (x, y, size, turn) in enumerate(_tree_places(track, seed)):
-        tree = bpy.data.objects.new(f"Fir {index + 1}", mesh)
-        tree.location = (x, y, float(terrain.height(x, y)) - 0.2)
-        tree.scale = (size, size, size)
-        tree.rotation_euler = (0.0, 0.0, turn)
-        collection.objects.link(tree)
-        trees.append(tree)
+def build_trees(terrain: Terrain, track: Array, collection: bpy.types.Collection, seed: int = 3) -> bpy.types.Object:
+    """Return one object with all fir trees on both sides of `track` (n, 3) [m, world], easy to hide or delete."""
+    fir = _fir()
+    vertices, faces, materials = [], [], []
+    for x, y, size, turn in _tree_places(track, seed):
+        c, s = size * np.cos(turn), size * np.sin(turn)
+        foot = (x, y, float(terrain.height(x, y)) - 0.2)
+        first = len(vertices) * len(fir.vertices)
+        vertices.append(fir.vertices @ np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, size))) + foot)
+        faces += [tuple(first + corner for corner in face) for face in fir.faces]
+        materials += fir.materials
+    trees = mesh_object("Firs", np.concatenate(vertices or [np.zeros((0, 3))]), faces, collection)
+    names = ("trunk", "fir", "snow")
+    for name in names:
+        trees.data.materials.append(_tree_material(name))
+    trees.data.polygons.foreach_set("material_index", np.array([names.index(m) for m in materials], dtype=np.int32))
+    trees.data.polygons.foreach_set("use_smooth", np.zeros(len(faces), dtype=bool))
     return trees
 
 
@@ -52,8 +56,8 @@ def _tree_places(track: Array, seed: int) -> list[tuple[float, float, float, flo
     ]
 
 
-def _fir_mesh() -> bpy.types.Mesh:
-    """Return the mesh of a fir 6 m high under snow: a trunk and four skirts of branches."""
+def _fir() -> Part:
+    """Return a fir 6 m high under snow: a trunk and four skirts of branches."""
     parts = [stack([Ring(-0.5, 0.16, 0.16, 0.16), Ring(1.4, 0.13, 0.13, 0.13)], 6, "trunk", (False, False))]
     for low, high, wide in ((0.8, 2.9, 1.5), (2.0, 4.0, 1.2), (3.1, 5.0, 0.9), (4.2, 6.2, 0.55)):
         rings = [
@@ -63,16 +67,7 @@ def _fir_mesh() -> bpy.types.Mesh:
             Ring(high, 0.02, 0.02, 0.02),
         ]
         parts.append(stack(rings, 9, lambda row, column: "snow" if row > 0 and column % 3 else "fir"))
-    part = join(parts)
-    mesh = bpy.data.meshes.new("Fir")
-    mesh.from_pydata(part.vertices.tolist(), [], part.faces)
-    names = ("trunk", "fir", "snow")
-    for name in names:
-        mesh.materials.append(_tree_material(name))
-    index = np.array([names.index(material) for material in part.materials], dtype=np.int32)
-    mesh.polygons.foreach_set("material_index", index)
-    mesh.update()
-    return mesh
+    return join(parts)
 
 
 def _tree_material(name: str) -> bpy.types.Material:

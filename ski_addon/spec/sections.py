@@ -17,7 +17,14 @@ class SkierSpec:
     sex: str = choice("male", ("male", "female"), "Body", "Table of segment masses and lengths (de Leva)")
     strength: float = number(1.0, 0.3, 3, "", "Strength", "Factor on all human joint torque limits", advanced=True)
     stance_width: float | Literal["auto"] = number(
-        "auto", 0.1, 0.5, "m", "Stance width", "Distance between the skis; auto = hip width", word="auto", advanced=True
+        "auto",
+        0.1,
+        0.5,
+        "m",
+        "Stance width",
+        "Distance between the skis; auto = a little over hip width",
+        word="auto",
+        advanced=True,
     )
     ski_length: float | Literal["auto"] = number(
         "auto", 0.8, 2.3, "m", "Ski length", "Length of each ski; auto = from body height", word="auto"

@@ -73,13 +73,14 @@ def test_the_same_tracks_come_out_every_time(core, scene, recording, terrain) ->
 def test_trees_keep_off_the_track_and_stand_on_the_ground(core, scene, recording, terrain) -> None:
     scenery = core("blender.scenery")
     trees = scenery.build_trees(terrain, recording.track_position, scene.collection)
-    assert len(trees) > 10
-    assert len({tree.data for tree in trees}) == 1
+    places_of_firs = places(trees).reshape(-1, len(scenery._fir().vertices), 3)
+    assert len(places_of_firs) > 10 and len(scene.collection.objects) == 1
     path = recording.track_position[::20, :2]
-    for tree in trees:
-        place = np.array(tree.location)
-        assert np.min(np.linalg.norm(path - place[:2], axis=1)) > scenery.TREE_CORRIDOR[0] - 1.0
-        assert place[2] == pytest.approx(float(terrain.height(place[0], place[1])) - 0.2, abs=1e-3)
+    for fir in places_of_firs:
+        middle = 0.5 * (fir.min(axis=0) + fir.max(axis=0))[:2]
+        assert np.min(np.linalg.norm(path - middle, axis=1)) > scenery.TREE_CORRIDOR[0] - 1.5
+        ground = float(terrain.height(middle[0], middle[1]))
+        assert ground - 1.2 < fir[:, 2].min() < ground and 3.5 < np.ptp(fir[:, 2]) < 11.0
 
 
 def test_mountains_are_far_and_round_about(core, scene) -> None:
