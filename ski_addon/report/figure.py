@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,7 +54,8 @@ def draw_figure(recording: Recording) -> Figure:
 
 def save_figure(figure: Figure, target: Path) -> None:
     """Write the figure as a picture file in one step."""
-    with atomic.atomic_path(target) as temporary, matplotlib.rc_context(RC):
+    with atomic.atomic_path(target) as temporary, matplotlib.rc_context(RC), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # letters of a run's name that the font lacks become boxes
         figure.savefig(temporary, metadata={"Software": "Ski Addon"} if target.suffix == ".png" else None)
 
 
@@ -67,6 +69,7 @@ def _write_title(figure: Figure, recording: Recording) -> None:
         f"{course.transition_duration:g} s between them"
     )
     ended = "" if status == "finished" else f" ({status} at {float(recording.time[-1]):.2f} s)"
-    figure.text(0.055, 0.972, spec.name + ended, fontsize=17, fontweight="bold", color=INK, va="center")
+    name = " ".join(spec.name.split()) + ended
+    figure.text(0.055, 0.972, name, fontsize=17, fontweight="bold", color=INK, va="center", parse_math=False)
     figure.text(0.055, 0.949, facts, fontsize=10.5, color=INK, va="center")
     figure.text(0.975, 0.949, "grey: transition between turns", fontsize=9, color=QUIET, va="center", ha="right")

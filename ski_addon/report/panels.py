@@ -91,7 +91,7 @@ def draw_torques(axes: Any, recording: Recording) -> None:
     axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (2, 2)))
     where = {"xycoords": ("axes fraction", "data"), "xytext": (-2, 3), "textcoords": "offset points"}
     axes.annotate("human limit", (1, 1.0), ha="right", fontsize=8, **where)
-    axes.set_ylim(0, max(1.12, 1.05 * max((joint.peak for joint in joints), default=0.0)))
+    axes.set_ylim(0, max(1.12, 1.05 * _largest(np.array([joint.peak for joint in joints]))))
     finish(axes, "Joint torques over human limits", "ratio", columns=4)
 
 
@@ -109,11 +109,17 @@ def draw_speed(axes: Any, recording: Recording) -> None:
     """Speed along the track."""
     draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)
     curve(axes, recording.time, recording.speed, THIRD, linewidth=1.6)
-    low, high = float(recording.speed.min()), float(recording.speed.max())
+    low, high = -_largest(-recording.speed), _largest(recording.speed)
     room = max(0.5, 0.15 * (high - low))
     axes.set_ylim(max(0.0, low - room), high + room)
     finish(axes, "Speed", "m/s")
 
 
 def _peak_mm(error: np.ndarray) -> str:
-    return f"{1000 * float(np.max(error)):.3g} mm"
+    return f"{1000 * _largest(error):.3g} mm"
+
+
+def _largest(values: np.ndarray) -> float:
+    """Return the largest finite value: a run that diverged may end in others."""
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if finite.size else 0.0
