@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ski_addon.body import BODY_NAMES, build_skier_model
-from ski_addon.body.limits import HINGE_LIMITS, hinge_limit
+from ski_addon.body.limits import HINGE_LIMITS, HingeLimit, hinge_limit
 from ski_addon.spec import SkierSpec
 from tests.ski_runs import default_model, mirrored_hinges
 
@@ -99,6 +99,14 @@ def test_right_limits_mirror_left_ones():
         for lower, upper in ((MODEL.joint_lower, MODEL.joint_upper), (MODEL.torque_lower, MODEL.torque_upper)):
             here, there = (lower[place], upper[place]), (lower[other], upper[other])
             assert there == (here if sign[joint] > 0 else (-here[1], -here[0])), SKELETON.joint_names[joint]
+
+
+def test_uneven_limits_change_ends_on_the_right(monkeypatch):
+    """As long as the table is even in torques, only this can tell which end is which."""
+    monkeypatch.setitem(HINGE_LIMITS, "thigh_x", HingeLimit(-10, 20, 30, 40))
+    assert hinge_limit("thigh_x.L") == HingeLimit(-10, 20, 30, 40)
+    assert hinge_limit("thigh_x.R") == HingeLimit(-20, 10, 40, 30)
+    assert hinge_limit("thigh_y.R") == hinge_limit("thigh_y.L")
 
 
 def test_ranges_are_human():

@@ -118,7 +118,7 @@ def test_steps_at_torque_and_hinge_limits_are_solved():
     """
     formulation, steps = bank(weak=True)
     reached = np.array([limits_reached(formulation, step) for step in steps])
-    assert np.sum(reached[:, 0] > 0) > 15 and np.sum(reached[:, 1] > 0) > 5
+    assert np.sum(reached[:, 0] > 0) > 10 and np.sum(reached[:, 1] > 0) > 3
     for step in steps:
         assert step.solution.status == 0
         assert_solved(formulation, step, 0.5, 0.4)
