@@ -18,7 +18,7 @@ def atomic_path(target: str | Path) -> Iterator[Path]:
     Whatever goes wrong, the temporary file is removed and `target` keeps what it held. Raises `OutputError`.
     """
     target = Path(target)
-    if target.is_dir():
+    if os.path.isdir(target):  # False for names that are too long, which Path.is_dir raises
         raise OutputError(target, "it is a folder")
     # The start of the name is enough: the whole one and more would be too long where the name itself just fits.
     temporary = target.with_name(f".{target.stem[:40]}.{os.getpid()}.tmp{target.suffix}")
@@ -55,7 +55,7 @@ def check_writable_folder(folder: str | Path) -> None:
 def output_folder(folder: str | Path) -> Iterator[Path]:
     """Yield `folder`, checked to be writable; folders made for it are removed again if nothing was put in them."""
     folder = Path(folder)
-    made = [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    made = [parent for parent in (folder, *folder.parents) if not os.path.exists(parent)]
     try:
         check_writable_folder(folder)
         yield folder

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import logging
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from .errors import (
     BlenderMissingError,
     Cancelled,
     MissingLibraryError,
+    OutputError,
     SimulationDiverged,
     SkierFell,
     one_line,
@@ -123,14 +125,26 @@ def write_run(
     """
     with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=folder) as temporary:
         stage = Path(temporary)
-        (stage / "spec.toml").write_text(spec.to_toml(), encoding="utf-8")
-        (stage / "summary.json").write_text(json_text(summary), encoding="utf-8")
-        recording.save(stage / "recording.npz")
-        if report:
-            _report_if_possible(recording, stage / "report.png", talk)
+        with _failures_in(folder):
+            (stage / "spec.toml").write_text(spec.to_toml(), encoding="utf-8")
+            (stage / "summary.json").write_text(json_text(summary), encoding="utf-8")
+            recording.save(stage / "recording.npz")
+            if report:
+                _report_if_possible(recording, stage / "report.png", talk)
         if not (stage / "report.png").exists():
             (folder / "report.png").unlink(missing_ok=True)
         atomic.move_all(stage, folder)
+
+
+@contextlib.contextmanager
+def _failures_in(folder: Path) -> Iterator[None]:
+    """Name the folder that cannot be written, not the hidden one within it that the files are collected in."""
+    try:
+        yield
+    except OutputError as error:
+        raise OutputError(folder, error.reason) from error
+    except OSError as error:
+        raise OutputError(folder, error.strerror or str(error)) from error
 
 
 def _report_if_possible(recording: Recording, target: Path, talk: Talk) -> None:
