@@ -45,11 +45,11 @@ ENDLESS = {
     "section": "[" + "course" * 150_000 + "]",
     "hexadecimal number": FULL.replace("turn_radius = 15.0", "turn_radius = 0x" + "F" * 900_000),
     "decimal number": FULL.replace("turn_radius = 15.0", "turn_radius = " + "9" * 900_000),
-    "list": FULL.replace("turn_radius = 15.0", "turn_radius = [" + "1," * 400_000 + "]"),
+    "list": FULL.replace("turn_radius = 15.0", "turn_radius = [" + "1," * 50_000 + "]"),
     "text": 'name = "' + "x" * 990_000,
-    "open text": "name = '''" + "\n" * 900_000,
-    "sections": "".join(f"[a{i}]\n" for i in range(90_000)),
-    "keys": "[course]\n" + "".join(f"a{i} = 1\n" for i in range(80_000)),
+    "open text": "name = '''" + "\n" * 200_000,
+    "sections": "".join(f"[a{i}]\n" for i in range(15_000)),
+    "keys": "[course]\n" + "".join(f"a{i} = 1\n" for i in range(15_000)),
     "same key": "a = 1\n" * 150_000,
     "ten megabytes": "# nothing\n" * 1_000_000,
 }
@@ -98,7 +98,7 @@ def test_empty_file_lacks_its_first_required_key(write, raw):
 def test_random_bytes_and_damaged_documents_never_fail_otherwise(write):
     rng = random.Random(7)
     raw = FULL.encode()
-    for count in range(300):
+    for count in range(150):
         if count % 3 == 0:
             bad = rng.randbytes(rng.randrange(200))
         elif count % 3 == 1:

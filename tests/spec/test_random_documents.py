@@ -13,7 +13,7 @@ from ski_addon.spec.fields import NUMBER, TEXT
 from ski_addon.spec.table import get_value
 from tests.spec.random_documents import KEYS, nested, random_flat
 
-SEEDS = range(400)
+SEEDS = range(150)
 
 
 @pytest.fixture(scope="module")
