@@ -1,4 +1,4 @@
-"""The 2019 paper's claims about simulated motion, by their numbers in docs of the papers' claims.
+"""What the 2019 paper claims about simulated motion; claims carry the numbers of the project's list of them.
 
 Claims that a plan or a model alone decides are tested there: 17 and 22 in planning, 18 in course, 27 in snow,
 28 in control and simulation, 29 in simulation.
