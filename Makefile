@@ -40,6 +40,7 @@ test-blender: env
 
 # The papers' whole grid of runs: minutes.
 acceptance: env
+	$(PY) -m tests.acceptance.full_matrix
 	$(PY) -m pytest -q $(CORE_TESTS) -m slow
 
 demo: env

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import os
@@ -31,12 +32,15 @@ def simulation(monkeypatch):
     )
 
 
-@pytest.fixture
-def disk_of():
-    """Limits how large files may become [bytes]: writing more fails, as on a full disk."""
+@contextlib.contextmanager
+def disk_of(size: int):
+    """Within it, writing more than `size` [bytes] to a file fails, as on a full disk."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:  # before the test runner writes to its own log
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def files(folder):
@@ -111,36 +115,33 @@ def test_folder_is_no_target_for_a_file(target):
         atomic.write_text(target, "x")
 
 
-def test_full_disk_leaves_the_old_text_and_no_half_one(disk_of, tmp_path):
+def test_full_disk_leaves_the_old_text_and_no_half_one(tmp_path):
     target = tmp_path / "a.txt"
     atomic.write_text(target, "old")
-    disk_of(1000)
-    with pytest.raises(OutputError, match=r"a\.txt: File too large"):
+    with disk_of(1000), pytest.raises(OutputError, match=r"a\.txt: File too large"):
         atomic.write_text(target, "x" * 5000)
     assert target.read_text() == "old" and files(tmp_path) == ["a.txt"]
 
 
 @pytest.mark.parametrize("room", [100, 1000, 5000])
-def test_disk_that_fills_up_while_writing_a_run_leaves_nothing(simulation, disk_of, tmp_path, capsys, room):
+def test_disk_that_fills_up_while_writing_a_run_leaves_nothing(simulation, tmp_path, capsys, room):
     """The least takes no file at all, the most all but the report."""
     folder = tmp_path / "out"
     command = "run" if room == 5000 else "simulate"
-    disk_of(room)
-    assert cli.main([command, "paper_main", "-o", str(folder), "--quiet"]) == 3
-    disk_of(resource.RLIM_INFINITY)
+    with disk_of(room):
+        assert cli.main([command, "paper_main", "-o", str(folder), "--quiet"]) == 3
     assert capsys.readouterr().err == f"ski_addon: cannot write {folder}: File too large\n"
     assert files(tmp_path) == []
 
 
-def test_disk_that_fills_up_while_drawing_leaves_no_picture(disk_of, tmp_path):
+def test_disk_that_fills_up_while_drawing_leaves_no_picture(tmp_path):
     pytest.importorskip("matplotlib")
     from ski_addon.report import save_report
 
     recording = synthetic_recording(duration=1.0)
     save_report(recording, tmp_path / "warm_up.png")  # matplotlib writes its font cache when it is first used
     (tmp_path / "warm_up.png").unlink()
-    disk_of(5000)
-    with pytest.raises(OutputError, match=r"report\.png: File too large"):
+    with disk_of(5000), pytest.raises(OutputError, match=r"report\.png: File too large"):
         save_report(recording, tmp_path / "report.png")
     assert files(tmp_path) == []
 

@@ -20,7 +20,9 @@ MOUNTAIN_DISTANCE = 1900.0
 def build_trees(terrain: Terrain, track: Array, collection: bpy.types.Collection, seed: int = 3) -> bpy.types.Object:
     """Return one object with all fir trees on both sides of `track` (n, 3) [m, world], easy to hide or delete."""
     fir = _fir()
-    vertices, faces, materials = [], [], []
+    vertices: list[Array] = []
+    faces: list[tuple[int, ...]] = []
+    materials: list[str] = []
     for x, y, size, turn in _tree_places(track, seed):
         c, s = size * np.cos(turn), size * np.sin(turn)
         foot = (x, y, float(terrain.height(x, y)) - 0.2)

@@ -24,7 +24,7 @@ PROGRESS_PULL = 10.0
 class Desired:
     """Desired accelerations and the errors behind them, overwritten each step.
 
-    `ski` (2, 6): linear [m/s^2] and angular [rad/s^2] in the reference ski's axes; `ski_axes` (2, 3, 3) those axes in
+    `ski` (2, 6): linear [m/s^2, world] and angular [rad/s^2] in the ski's own axes; `ski_axes` (2, 3, 3) those axes in
     the world; `com` (2,) along the track's left and normal, `com_axes` (2, 3); `pelvis` (3,) [rad/s^2] in the
     pelvis's axes; `joints` (31,); `angular_momentum_rate` (3,) [N m]; `ski_offset` (2, 3) position errors [m] and
     `ski_turn` (2, 3) rotation errors [rad, world]; `com_offset` (3,) [m].

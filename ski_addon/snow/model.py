@@ -54,11 +54,11 @@ class Snow:
 def penetration_depth(snow: Snow, force: np.ndarray, edge_angle: np.ndarray, length: float, width: float) -> np.ndarray:
     """Return how deep [m] an edge of `length` [m] on a ski of `width` [m] sits in the snow under `force` [N].
 
-    Inverts SG19 Eq. 20: a flat ski spreads the force over its base, an edged one cuts a triangle; the smaller depth
-    holds, so that the two laws join where the triangle's base is as wide as the ski.
+    Inverts SG19 Eq. 20: the displaced snow is a triangle under the edge and, once that reaches the ski's far edge, a
+    trapezium under its whole base; a flat ski is the limit.
     """
     force = np.maximum(np.asarray(force, dtype=float), 0.0)
     tangent = np.abs(np.tan(np.array(edge_angle, dtype=float, order="C")))
-    flat = 2.0 * force / (snow.hardness * length * width)
-    edged = np.sqrt(2.0 * force * tangent / (snow.hardness * length))
-    return np.maximum(flat / 2.0, edged)
+    triangle = np.sqrt(2.0 * force * tangent / (snow.hardness * length))
+    trapezium = force / (snow.hardness * length * width) + 0.5 * width * tangent
+    return np.where(triangle < width * tangent, triangle, trapezium)
