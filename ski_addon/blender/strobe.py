@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 SIZE = (1600, 900)
 SAMPLES = 20
-STROBE_TURNS = 2.5
-"""Turns the strobe picture shows."""
+STROBE_TURNS = 2.0
+"""Turns the strobe picture shows: from the apex of one to that of the next but one."""
 STROBE_AZIMUTH, STROBE_HEIGHT = -12.0, 15.0
 """Where the strobe's camera stands: below the turns, beside their line, and over the slope's plane [deg]."""
 STROBE_LENS = 30.0

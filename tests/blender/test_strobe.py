@@ -20,7 +20,7 @@ def test_moments_are_even_and_within_the_run(core, recording) -> None:
     assert len(times) == 10
     assert 0.0 <= times[0] < times[-1] <= 9.0
     np.testing.assert_allclose(np.diff(times), np.diff(times)[0])
-    assert times[-1] - times[0] == pytest.approx(2.5 * 1.5, abs=0.8)  # about two and a half turns
+    assert times[-1] - times[0] == pytest.approx(2.0 * 1.5, abs=0.8)  # about two turns
 
 
 def test_a_short_run_is_shown_whole(core, extension) -> None:
