@@ -32,7 +32,7 @@ def make_plan(spec: RunSpec) -> Planned:
     terrain = build_terrain(spec.slope)
     track = build_track(spec, terrain)
     model = build_skier_model(spec.skier)
-    return Planned(spec, terrain, track, model, plan_motion(spec, track, terrain, model))
+    return Planned(spec, terrain, track, model, plan_motion(spec, track, model))
 
 
 def start_simulation(planned: Planned) -> Simulation:

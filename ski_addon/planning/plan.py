@@ -12,7 +12,6 @@ from ..course import Track
 from ..errors import PlanInfeasible
 from ..snow import Snow
 from ..spec import RunSpec
-from ..terrain import Terrain
 from .pendulum import Pendulum, balanced_pendulum, speed_for_lean
 from .pose import PlannedPoses, plan_poses, track_frames
 from .speed import plan_speed, travel_time
@@ -77,13 +76,12 @@ class _Gravity:
     into: np.ndarray
 
 
-def plan_motion(spec: RunSpec, track: Track, terrain: Terrain, model: SkierModel) -> MotionPlan:
-    """Plan how the skier of `model` skis `track`.
+def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
+    """Plan how the skier of `model` skis `track`, which carries the ground's frames.
 
     Raises `PlanInfeasible`, with the place and the speed that would work there, when the track needs more lean than
     `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach.
     """
-    del terrain  # the track carries its frames; uneven ground comes in through them
     stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg))
     gravity = _Gravity(track.tangent @ GRAVITY, track.left @ GRAVITY, -(track.surface_normal @ GRAVITY))
     time, speed, pendulum = _balance(spec, track, stance, gravity)
