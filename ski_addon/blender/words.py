@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..gravity import STANDARD_GRAVITY
 from ..spec.estimate import show_duration
 
 if TYPE_CHECKING:
     from ..planning import MotionPlan
     from ..simulation.recording import Recording
     from .bake import BakeResult
-
-GRAVITY = 9.81
 
 
 def plan_lines(plan: MotionPlan) -> list[str]:
@@ -31,7 +30,7 @@ def recording_lines(recording: Recording) -> list[str]:
     """Return how a simulation went: how it ended, then speed, lean and force."""
     if not len(recording.time):
         return [ending(recording)]
-    weight = float(recording.header["mass"]) * GRAVITY
+    weight = float(recording.header["mass"]) * STANDARD_GRAVITY
     force = float(np.linalg.norm(recording.snow_force.sum(axis=1), axis=1).max()) / weight
     lean = float(np.degrees(np.abs(recording.inclination).max()))
     return [

@@ -9,16 +9,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ..gravity import GRAVITY
 from ..spec import SkierSpec
 from .limits import REFERENCE_MASS_TIMES_HEIGHT, hinge_limit
 from .skeleton import SIDES, Skeleton, build_skeleton
 
 if TYPE_CHECKING:
     import mujoco
-
-GRAVITY = np.array([0.0, 0.0, -9.81])
-"""Gravity in the world frame [m/s^2]."""
-GRAVITY.setflags(write=False)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from ..body import SkierModel
-from ..body.model import GRAVITY
+from ..gravity import GRAVITY
 
 
 class Dynamics:
@@ -52,7 +52,6 @@ class Dynamics:
         self.applied = np.zeros(nv)
         self._bp_block = np.zeros((nb, len(pole)))
         self._pp_block = np.zeros((len(pole), len(pole)))
-        self._pole_free = np.zeros(len(pole))
         self._pole_coupling = np.zeros((len(pole), nb))
         self.ski_jacobian = np.zeros((2, 6, nb))
         self.ski_bias = np.zeros((2, 6))

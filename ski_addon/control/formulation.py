@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body import SkierModel
+from ..gravity import STANDARD_GRAVITY
 from ..snow import Snow, contact_points, edge_bearing
 from .dynamics import Dynamics
 from .gains import (
@@ -140,7 +141,7 @@ class Formulation:
         self._torque_lower, self._torque_upper = model.torque_lower, model.torque_upper
         self.hinge_rows = slice(n, n + hinges)
         self._snow_rows = slice(n + hinges, self.rows)
-        weight = model.mass * 9.81 / FORCE_UNIT
+        weight = model.mass * STANDARD_GRAVITY / FORCE_UNIT
         self._normal_cap = FORCE_LIMIT_WEIGHTS * weight
         self._shear_cap = EDGE_SHEAR_RATIO * weight
         self._grip = self.snow.shear_limit / FORCE_UNIT / self.segments

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import PlanInfeasible
 from ..frames import components, normalized
+from ..gravity import STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import CourseSpec, RunSpec
 from ..terrain import Terrain
@@ -120,12 +121,11 @@ def _integrate(
     step = end / count
     time = np.linspace(0.0, end, count + 1)
     bend = schedule.curvature_at(np.linspace(0.0, end, 2 * count + 1))
-    gravity = 9.81
 
     def rate(state: np.ndarray, curvature: float) -> np.ndarray:
         v, psi = state[1], state[2]
         c, s = np.cos(psi), np.sin(psi)
-        glide = snow.glide_acceleration(gravity * steepness * c, gravity * normal, v)
+        glide = snow.glide_acceleration(STANDARD_GRAVITY * steepness * c, STANDARD_GRAVITY * normal, v)
         return np.array((v, glide, curvature * v, v * c, v * s))
 
     states = np.empty((count + 1, 5))

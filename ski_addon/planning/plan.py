@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..body.model import GRAVITY
 from ..course import Track
 from ..errors import PlanInfeasible
+from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
 from .pendulum import Pendulum, balanced_pendulum, speed_for_lean
@@ -115,7 +115,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         pose=poses.qpos,
         ski_position=poses.ski_position,
         ski_rotation=poses.ski_rotation,
-        load=pendulum.normal / 9.81,
+        load=pendulum.normal / STANDARD_GRAVITY,
     )
 
 
@@ -160,7 +160,7 @@ def _angulation(spec: RunSpec, speed: np.ndarray, curvature: np.ndarray) -> np.n
     """
     if spec.technique.angulation != "auto":
         return np.full_like(speed, float(spec.technique.angulation))
-    sideways = speed**2 * curvature / 9.81
+    sideways = speed**2 * curvature / STANDARD_GRAVITY
     return -(0.35 + 0.40 * sideways**2 / (0.36 + sideways**2))
 
 

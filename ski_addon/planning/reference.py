@@ -14,17 +14,14 @@ from ..body import SkierModel
 from ..frames import continuous_quaternions, quaternion_conjugate, quaternion_from_matrix, quaternion_multiply
 from .plan import MotionPlan
 
-FRAMES = ("ski.L", "ski.R", "pelvis")
-"""Bodies whose rotation the reference carries."""
-
 
 class Reference:
     """Spline table over a plan.
 
     `at(s)` returns (3, width): values, first and second derivatives by arc length. Columns: `com` (3), `ski_position`
-    (2 x 3), `joints` (31), `turning` (3 frames x 3: world rotation vector per metre), `tangent` (3), `left` (3),
-    `normal` (3), `quaternion` (3 frames x 4), `inclination`, `edge_angle` (2), `curvature`, `speed`, `turn_phase`,
-    `acceleration`, `track_position` (3).
+    (2 x 3), `joints` (31), `turning` (left ski, right ski, pelvis: world rotation vector per metre), `tangent` (3),
+    `left` (3), `normal` (3), `quaternion` (the same three x 4), `inclination`, `edge_angle` (2), `curvature`, `speed`,
+    `turn_phase`, `acceleration`, `track_position` (3).
     """
 
     def __init__(self, plan: MotionPlan, model: SkierModel) -> None:

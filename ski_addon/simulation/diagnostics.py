@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..gravity import STANDARD_GRAVITY
 from .recording import Recording
 
 
@@ -15,7 +16,7 @@ def summarise(recording: Recording, step_seconds: list[float] | None = None) -> 
     Lengths in metres, angles in degrees where the key says so, forces in body weights; `torque_ratio_max` is of the
     human limit; `step_us_*` are wall microseconds a step, None when not measured.
     """
-    weight = float(recording.header["mass"]) * 9.81
+    weight = float(recording.header["mass"]) * STANDARD_GRAVITY
     total = np.linalg.norm(recording.snow_force.sum(axis=1), axis=1)
     timing = np.asarray(step_seconds or [], dtype=float) * 1e6
     worst = int(np.argmax(recording.torque_ratio.max(axis=0))) if len(recording.time) else 0

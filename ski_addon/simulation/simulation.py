@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..body import SkierModel
-from ..body.model import GRAVITY
 from ..control import Command, Controller, Dynamics, Gains
 from ..frames import matrix_from_quaternion
+from ..gravity import GRAVITY
 from ..planning import MotionPlan, Reference
 from ..snow import Snow
 from ..spec import RunSpec

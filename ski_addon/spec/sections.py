@@ -123,10 +123,22 @@ class SnowSpec:
         0.004, 0, 0.05, "s/m", "Friction per speed", "Friction added for each m/s of speed"
     )
     hardness: float = number(
-        1.2e8, 4e7, 9e10, "N/m^3", "Hardness", "Force per penetrated volume of snow", advanced=True
+        1.2e8,
+        4e7,
+        9e10,
+        "N/m^3",
+        "Hardness",
+        "Force per penetrated volume of snow: how deep edges cut; the motion does not depend on it",
+        advanced=True,
     )
     shear_strength: float = number(
-        5.7e4, 1e3, 1e6, "N/m^2", "Shear strength", "Side force per sheared area of snow", advanced=True
+        5.7e4,
+        1e3,
+        1e6,
+        "N/m^2",
+        "Shear strength",
+        "Side force per sheared area of snow; the motion does not depend on it, see shear_limit",
+        advanced=True,
     )
     shear_limit: float | Literal["unlimited"] = number(
         "unlimited",
