@@ -14,10 +14,11 @@ LEFT, TRANSITION, RIGHT = 1, 0, -1
 class Track:
     """Geometry of a run by arc length; read-only arrays.
 
-    `arc_length` (n,) [m] rises strictly, at places about equal times apart; `position` (n, 3) [m, world] lies on the
-    snow, `tangent` and `surface_normal` (n, 3) are unit vectors, `curvature` (n,) [1/m] is within the surface,
-    positive to the left; `phase` (n,) int8 is +1 in a left turn, -1 in a right turn, 0 between; `turn` (n,) counts
-    turns from 1 (a transition belongs to the turn it leaves); `start_speed` [m/s].
+    `arc_length` (n,) [m] rises strictly; `position` (n, 3) [m, world] lies on the snow, `tangent` and `surface_normal`
+    (n, 3) are unit vectors, `curvature` (n,) [1/m] is within the surface, positive to the left; `normal_curvature`
+    (n,) [1/m] is that of the ground under the track, positive in a hollow, and `torsion` (n,) [rad/m] how fast the
+    ground's left side rises along it; `phase` (n,) int8 is +1 in a left turn, -1 in a right turn, 0 between; `turn`
+    (n,) counts turns from 1 (a transition belongs to the turn it leaves); `start_speed` [m/s].
     """
 
     arc_length: np.ndarray
@@ -25,6 +26,8 @@ class Track:
     tangent: np.ndarray
     surface_normal: np.ndarray
     curvature: np.ndarray
+    normal_curvature: np.ndarray
+    torsion: np.ndarray
     phase: np.ndarray
     turn: np.ndarray
     start_speed: float

@@ -15,7 +15,8 @@ from ..frames import components, normalized
 from ..gravity import STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import CourseSpec, RunSpec
-from ..terrain import Terrain
+from ..terrain import PlaneTerrain, Terrain
+from .surface import track_on_surface
 from .track import LEFT, RIGHT, TRANSITION, Track
 
 SAMPLE_TIME = 0.005
@@ -84,7 +85,7 @@ def turn_schedule(course: CourseSpec) -> TurnSchedule:
 
 
 def build_turn_track(spec: RunSpec, terrain: Terrain) -> Track:
-    """Return the track of linked turns on a plane slope.
+    """Return the track of linked turns: exact on a plane slope, laid over any other ground from its mean plane.
 
     Unless the first turn is a half one, the run starts turned away from the fall line so that the middle of the first
     turn heads down it; otherwise the whole track would drift to one side.
@@ -92,11 +93,11 @@ def build_turn_track(spec: RunSpec, terrain: Terrain) -> Track:
     """
     schedule = turn_schedule(spec.course)
     snow = Snow.of(spec.snow, spec.skier)
-    normal = terrain.normal(0.0, 0.0)
-    motion = _integrate(schedule, snow, spec.course.start_speed, float(normal[0]), float(normal[2]))
+    steepness, normal = float(np.sin(terrain.mean_angle)), float(np.cos(terrain.mean_angle))
+    motion = _integrate(schedule, snow, spec.course.start_speed, steepness, normal)
     heading0 = _start_heading(schedule, motion, spec.course)
     if heading0:
-        motion = _integrate(schedule, snow, spec.course.start_speed, float(normal[0]), float(normal[2]), heading0)
+        motion = _integrate(schedule, snow, spec.course.start_speed, steepness, normal, heading0)
     return _track(schedule, motion, terrain, spec.course.start_speed)
 
 
@@ -161,18 +162,21 @@ def _start_heading(schedule: TurnSchedule, motion: _Motion, course: CourseSpec) 
 
 
 def _track(schedule: TurnSchedule, motion: _Motion, terrain: Terrain, start_speed: float) -> Track:
+    phase, turn = schedule.labels_at(motion.time)
+    if not isinstance(terrain, PlaneTerrain):
+        return track_on_surface(terrain, motion.down, motion.left, phase, turn, start_speed)
     normal = terrain.normal(0.0, 0.0)
     down_axis = normalized(np.array([normal[2], 0.0, -normal[0]]))
     left_axis = np.array([0.0, 1.0, 0.0])
     position = motion.down[:, None] * down_axis + motion.left[:, None] * left_axis
-    tangent = np.cos(motion.heading)[:, None] * down_axis + np.sin(motion.heading)[:, None] * left_axis
-    phase, turn = schedule.labels_at(motion.time)
     return Track(
         arc_length=motion.arc.copy(),
         position=position,
-        tangent=tangent,
+        tangent=np.cos(motion.heading)[:, None] * down_axis + np.sin(motion.heading)[:, None] * left_axis,
         surface_normal=np.broadcast_to(normal, position.shape).copy(),
         curvature=schedule.curvature_at(motion.time),
+        normal_curvature=np.zeros_like(motion.arc),
+        torsion=np.zeros_like(motion.arc),
         phase=phase,
         turn=turn,
         start_speed=start_speed,

@@ -11,6 +11,9 @@ import numpy as np
 class Terrain(Protocol):
     """A snow surface over the horizontal plane; x points down the fall line, y to the left [m, world]."""
 
+    mean_angle: float
+    """Steepness [rad] of the plane in whose coordinates courses are drawn."""
+
     def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         """Return the surface's z [m] at `x`, `y` (broadcast together)."""
         ...
@@ -26,6 +29,7 @@ class PlaneTerrain:
     def __init__(self, angle: float) -> None:
         """Take the slope's angle [rad], 0 for flat ground."""
         self.angle = angle
+        self.mean_angle = angle
 
     def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         """Return z [m] at `x`, `y`; see `Terrain`."""
