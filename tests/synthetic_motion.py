@@ -48,6 +48,7 @@ def synthetic_motion(
         header={"spec": spec.to_toml(), "spec_hash": spec.content_hash(), "status": "finished", "status_detail": {}},
         time=start + clock,
         arc_length=SPEED * clock,
+        progress=clock,
         speed=SPEED + swing**2,
         qpos=qpos,
         inclination=lean,

@@ -29,6 +29,7 @@ class SyntheticRecording:
     header: dict[str, Any]
     time: np.ndarray
     arc_length: np.ndarray
+    progress: np.ndarray
     speed: np.ndarray
     track_position: np.ndarray
     track_tangent: np.ndarray
@@ -80,6 +81,7 @@ def synthetic_recording(
         },
         time=time,
         arc_length=8.0 * time,
+        progress=time,
         speed=8.0 + swing**2,
         track_position=np.stack((x, y, -x * np.tan(tilt)), axis=1),
         track_tangent=steps / np.linalg.norm(steps, axis=1, keepdims=True),

@@ -20,7 +20,7 @@ class Command:
     """What the controller decided at one step.
 
     `torque` (31,) [N m]; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
-    `ski_force` (2, 3) [N, world]; `rate` [m/s] of progress; `sample` (3, width) the reference; `edge_angle` (2,) [rad]
+    `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle` (2,) [rad]
     of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
     """
 
@@ -53,7 +53,7 @@ class Controller:
         return self.tasks.desired
 
     def step(self, progress: float) -> Command:
-        """Return the command at the dynamics' present state with the skier `progress` [m] along the track."""
+        """Return the command at the dynamics' present state with the skier `progress` [s] into the plan."""
         dynamics, formulation = self.dynamics, self.formulation
         sample = self.reference.at(progress)
         rate = progress_rate(self.reference, sample, dynamics)

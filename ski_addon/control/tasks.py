@@ -1,8 +1,8 @@
 """Tasks: what each part of the body should accelerate like to follow the reference [SG19 Eq. 32-42].
 
 Desired accelerations are proportional-derivative laws on errors plus the reference's own acceleration. The reference
-is looked up at the skier's progress sigma along the track: with derivatives ' by arc length, velocity is X' sigma. and
-acceleration X'' sigma.^2 + X' sigma.. .
+is looked up at the skier's progress sigma, the planned time whose place is reached: with derivatives ' by planned time,
+velocity is X' sigma. and acceleration X'' sigma.^2; sigma. is 1 for a skier who is as fast as planned.
 """
 
 from __future__ import annotations
@@ -18,6 +18,10 @@ from .gains import Gains
 
 PROGRESS_PULL = 10.0
 """Rate [1/s] at which progress is drawn to where the centre of mass is."""
+CREEP = 0.3
+"""Planned speed along the skis [m/s] about and below which progress is kept by the clock."""
+FASTEST_RATE = 3.0
+"""Most planned seconds that may pass in a second."""
 
 
 @dataclass
@@ -25,7 +29,7 @@ class Desired:
     """Desired accelerations and the errors behind them, overwritten each step.
 
     `ski` (2, 6): linear [m/s^2, world] and angular [rad/s^2] in the ski's own axes; `ski_axes` (2, 3, 3) those axes in
-    the world; `com` (2,) along the track's left and normal, `com_axes` (2, 3); `pelvis` (3,) [rad/s^2] in the
+    the world; `com` (2,) across the skis and along the normal, `com_axes` (2, 3); `pelvis` (3,) [rad/s^2] in the
     pelvis's axes; `joints` (31,); `angular_momentum_rate` (3,) [N m]; `ski_offset` (2, 3) position errors [m] and
     `ski_turn` (2, 3) rotation errors [rad, world]; `com_offset` (3,) [m].
     """
@@ -43,16 +47,19 @@ class Desired:
 
 
 def progress_rate(reference: Reference, sample: np.ndarray, dynamics: Dynamics) -> float:
-    """Return sigma. [m/s], how fast the place whose reference the skier follows moves along the track.
+    """Return sigma., the planned seconds that pass in a second.
 
-    A reference by time cannot be followed, for nothing drives a skier along the track but gravity: place and speed
-    along it are the skier's own. `sample` is the reference at the present place.
+    A reference by the clock cannot be followed, for nothing drives a skier along the skis but gravity: place and speed
+    along them are the skier's own. Where the plan hardly moves along the skis, standing or braking across the slope,
+    there is nothing to be late for, and the clock rules. `sample` is the reference at the present progress.
     """
     columns = reference.columns
-    tangent = sample[0, columns["tangent"]]
-    behind = float(tangent @ (dynamics.com - sample[0, columns["com"]]))
-    speed = float(tangent @ dynamics.com_velocity)
-    return (speed + PROGRESS_PULL * behind) / float(tangent @ sample[1, columns["com"]])
+    along = sample[0, columns["along"]]
+    behind = float(along @ (dynamics.com - sample[0, columns["com"]]))
+    speed = float(along @ dynamics.com_velocity) + PROGRESS_PULL * behind
+    planned = float(along @ sample[1, columns["com"]])
+    rate = (speed * planned + CREEP * CREEP) / (planned * planned + CREEP * CREEP)
+    return min(max(rate, 0.0), FASTEST_RATE)
 
 
 class TaskSet:
@@ -67,14 +74,14 @@ class TaskSet:
         self._reference_velocity = np.zeros(len(dynamics.model.body_dof))
 
     def update(self, sample: np.ndarray, rate: float) -> Desired:
-        """Return the desired accelerations at reference `sample` (3, width) and progress `rate` [m/s]."""
+        """Return the desired accelerations at reference `sample` (3, width) and progress `rate`."""
         columns, desired = self._columns, self.desired
         value, slope, bend = sample
         velocity = slope * rate
-        acceleration = bend * (rate * rate) + slope * float(value[columns["acceleration"]][0])
+        acceleration = bend * (rate * rate)
         turning = columns["turning"]
         spin = value[turning] * rate
-        spin_rate = slope[turning] * (rate * rate) + value[turning] * float(value[columns["acceleration"]][0])
+        spin_rate = slope[turning] * (rate * rate)
         quaternions = value[columns["quaternion"]].tolist()
         for ski in range(2):
             self._ski(ski, value, velocity, acceleration, spin, spin_rate, quaternions)
@@ -113,7 +120,7 @@ class TaskSet:
     def _com(self, value: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> None:
         columns, dynamics, gain, desired = self._columns, self.dynamics, self.gains.com, self.desired
         com = columns["com"]
-        desired.com_axes[0], desired.com_axes[1] = value[columns["left"]], value[columns["normal"]]
+        desired.com_axes[0], desired.com_axes[1] = value[columns["across"]], value[columns["normal"]]
         np.subtract(value[com], dynamics.com, out=desired.com_offset)
         wanted = gain.kp * desired.com_offset + gain.kd * (velocity[com] - dynamics.com_velocity) + acceleration[com]
         np.dot(desired.com_axes, wanted, out=desired.com)

@@ -30,7 +30,8 @@ class MotionPlan:
     to the left; `phase` and `turn` as in `Track`; `turn_phase` -1..1 (curvature over the tightest, positive left);
     `inclination` (n,) and `edge_angle` (n, 2) [rad] positive to the left; `com` (n, 3) [m, world]; `pose` (n, nq);
     `ski_position` (n, 2, 3) [m, world], `ski_rotation` (n, 2, 3, 3); `load` (n,) normal snow force in units of the
-    skier's weight.
+    skier's weight. `ski_frame` (n, 3, 3) has columns along the skis, across them to the left, and up from the snow;
+    `steering` (n,) [rad] is the angle from track to skis, positive to the left.
     """
 
     arc_length: np.ndarray
@@ -51,6 +52,8 @@ class MotionPlan:
     ski_position: np.ndarray
     ski_rotation: np.ndarray
     load: np.ndarray
+    ski_frame: np.ndarray
+    steering: np.ndarray
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -116,6 +119,8 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         ski_position=poses.ski_position,
         ski_rotation=poses.ski_rotation,
         load=pendulum.normal / STANDARD_GRAVITY,
+        ski_frame=frames,
+        steering=np.zeros_like(speed),
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..control import Command, Dynamics
+from ..planning import Reference
 from ..terrain import Terrain
 
 TIPPED_COSINE = 0.2
@@ -20,8 +21,8 @@ SKI_LEFT_TRACK = 0.4
 """Error of a ski corner [m] beyond which a ski has left its track."""
 TELLING_TIME = 0.03
 """A hinge at its torque limit for this long [s] before a fall is named as its reason."""
-STALLED = 0.05
-"""Progress along the track [m/s] below which the skier has come to a stop."""
+STALLED, GLIDING = 0.02, 0.5
+"""The skier has come to a stop where progress is below the first [of planned] and the plan faster than the second [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +45,9 @@ class Fall:
 class FallWatch:
     """Watches a run for a fall and remembers what the muscles and the solver did before it."""
 
-    def __init__(self, dynamics: Dynamics, terrain: Terrain) -> None:
-        """Watch the skier of `dynamics` on `terrain`."""
+    def __init__(self, dynamics: Dynamics, reference: Reference, terrain: Terrain) -> None:
+        """Watch the skier of `dynamics`, who follows `reference` on `terrain`."""
+        self._speed = reference.columns["speed"]
         self._dynamics, self._terrain = dynamics, terrain
         skeleton = dynamics.model.skeleton
         self._height = skeleton.height
@@ -69,7 +71,7 @@ class FallWatch:
         what = self._what(normal, ski_error)
         if what is not None:
             return Fall("fell", time, what, progress, self._why(time, command))
-        if command.rate < STALLED:
+        if command.rate < STALLED and float(command.sample[0, self._speed][0]) > GLIDING:
             why = "friction and slope no longer carry it forward"
             return Fall("fell", time, "the skier came to a stop", progress, why)
         if command.solution.status != 0:

@@ -20,7 +20,7 @@ from ..atomic import atomic_path
 from ..errors import RecordingError
 
 FORMAT = "ski-addon-recording"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 DAMAGE = (OSError, ValueError, EOFError, RuntimeError, MemoryError, OverflowError, struct.error, zlib.error)
 """What zipfile and numpy raise on damaged files."""
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -31,6 +31,7 @@ LARGEST_BYTES = 16 * 2**30
 SHAPES: dict[str, tuple[int, ...]] = {
     "time": (),
     "arc_length": (),
+    "progress": (),
     "speed": (),
     "qpos": (42,),
     "qvel": (41,),
@@ -72,7 +73,7 @@ class Recording:
     `header`: dict with `spec` (the run document as TOML), `spec_hash`, `model_hash`, `versions`, `seed`, `status`
     ("finished", "fell", "cancelled", "diverged"), `status_detail` ({time, what, where, why} or {}), `body_names`,
     `joint_names`, `actuated_joint_names`, `time_step`, `gravity`, `mass`.
-    Arrays: `time` [s], `arc_length` of the skier's place [m], `speed` of the centre of mass [m/s]; `qpos` (n, 42),
+    Arrays: `time` [s], `arc_length` of the skier's place [m], `progress` in the plan [s, planned], `speed` of the centre of mass [m/s]; `qpos` (n, 42),
     `qvel` (n, 41), `tau` (n, 31) [N m]; `snow_force` (n, 2, 3) on each ski [N, world]; `snow_edge_force` (n, 2, 2)
     normal force by ski and edge [N], `snow_edge_side` (n, 2, 2) side force, positive to the left [N];
     `inclination` (n,), `edge_angle` (n, 2) [rad] as they were, `edge_angle_reference` (n, 2); `com`, `com_reference`
@@ -85,6 +86,7 @@ class Recording:
     header: dict[str, Any]
     time: np.ndarray
     arc_length: np.ndarray
+    progress: np.ndarray
     speed: np.ndarray
     qpos: np.ndarray
     qvel: np.ndarray

@@ -45,11 +45,12 @@ class Simulation:
         self.controller = Controller(self.dynamics, self.reference, self.snow, spec.simulation.segments, Gains())
         self.step_total = math.ceil(plan.duration / self.time_step)
         self.step_done = 0
-        self.progress = 0.0
+        self.progress = 0.0  # [s] into the plan
+        self.arc_length = 0.0
         self.finished = False
         self.fall: Fall | None = None
         self.step_seconds: list[float] = []
-        self._watch = FallWatch(self.dynamics, terrain)
+        self._watch = FallWatch(self.dynamics, self.reference, terrain)
         self._recorder = Recorder(self.step_total + 256)
         half_length, half_width = 0.5 * model.skeleton.ski_length, 0.5 * model.skeleton.ski_width
         self._corners = np.array(
@@ -61,7 +62,7 @@ class Simulation:
     @property
     def fraction(self) -> float:
         """How much of the run is done, 0..1."""
-        return min(self.progress / self.plan.length, 1.0)
+        return min(self.progress / self.plan.duration, 1.0)
 
     @property
     def running(self) -> bool:
@@ -81,23 +82,24 @@ class Simulation:
     def step(self) -> None:
         """Make one step: dynamics, control, record, integrate."""
         dynamics, now = self.dynamics, self.step_done * self.time_step
-        self.fall = self._watch.divergence(now, self.progress)
+        self.fall = self._watch.divergence(now, self.arc_length)
         if self.fall is not None:
             return
         dynamics.update()
         command = self.controller.step(self.progress)
+        self.arc_length = float(command.sample[0, self.reference.columns["arc_length"]][0])
         ratio = np.maximum(command.torque / self.model.torque_upper, command.torque / self.model.torque_lower)
         self._watch.note_torques(now, ratio)
         ski_error = self._ski_error()
         if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
-            self.fall = self._watch.check(now, self.progress, command, ski_error)
+            self.fall = self._watch.check(now, self.arc_length, command, ski_error)
         self._record(now, command, ratio, ski_error)
         if self.fall is not None:
             return
         dynamics.integrate(dynamics.accelerations(command.torque, command.snow), self.time_step)
         self.progress += command.rate * self.time_step
         self.step_done += 1
-        self.finished = self.progress >= self.plan.length
+        self.finished = self.progress >= self.plan.duration
 
     def recording(self, status: str | None = None) -> Recording:
         """Return the recording so far. `status` defaults to what happened: "finished", "fell", "diverged", or
@@ -111,14 +113,13 @@ class Simulation:
         """Set the planned pose and velocity at the start of the track."""
         dynamics, model, columns = self.dynamics, self.model, self.reference.columns
         value, slope, _ = self.reference.at(0.0)
-        speed = float(self.plan.speed[0])
         dynamics.qpos[:] = self.plan.pose[0]
         velocity = np.zeros(model.mujoco.nv)
-        velocity[model.actuated_dof] = slope[columns["joints"]] * speed
-        velocity[3:6] = matrix_from_quaternion(self.plan.pose[0, 3:7]).T @ value[columns["turning"]][6:9] * speed
+        velocity[model.actuated_dof] = slope[columns["joints"]]
+        velocity[3:6] = matrix_from_quaternion(self.plan.pose[0, 3:7]).T @ value[columns["turning"]][6:9]
         dynamics.qvel[:] = velocity
         dynamics.update()
-        velocity[:3] = slope[columns["com"]] * speed - dynamics.com_velocity
+        velocity[:3] = slope[columns["com"]] - dynamics.com_velocity
         dynamics.qvel[:] = velocity
 
     def _ski_error(self) -> float:
@@ -136,7 +137,7 @@ class Simulation:
         dynamics, columns, value = self.dynamics, self.reference.columns, command.sample[0]
         desired, model = self.controller.desired, self.model
         place = self.reference.interval(self.progress)
-        normal, left = value[columns["normal"]], value[columns["left"]]
+        normal, left = value[columns["normal"]], value[columns["across"]]
         over = dynamics.com - value[columns["track_position"]]
         hinges = dynamics.qpos[model.actuated_qpos]
         margin = min(float((hinges - model.joint_lower).min()), float((model.joint_upper - hinges).min()))
@@ -144,6 +145,7 @@ class Simulation:
         self._recorder.add(
             (
                 now,
+                self.arc_length,
                 self.progress,
                 math.sqrt(dynamics.com_velocity @ dynamics.com_velocity),
                 dynamics.qpos,

@@ -58,7 +58,7 @@ def bank(weak: bool) -> tuple[Formulation, tuple[Recorded, ...]]:
     for i in range(1, 400, 20) if weak else (*range(2, 850, 60), *range(856, 1000, 8)):
         dynamics.qpos[:], dynamics.qvel[:] = recording.qpos[i], recording.qvel[i]
         dynamics.update()
-        controller.step(float(recording.arc_length[i]))
+        controller.step(float(recording.progress[i]))
     return controller.formulation, tuple(recorded)
 
 

@@ -184,7 +184,7 @@ def test_array_of_words_is_named(saved, recording):
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ({"format": "something else", "format_version": 1}, "not a recording of a ski run"),
+        ({"format": "something else", "format_version": 2}, "not a recording of a ski run"),
         ({}, "not a recording of a ski run"),
         ([1, 2], "not a recording of a ski run"),
         ({"format": "ski-addon-recording", "format_version": 99}, "format version 99"),

@@ -218,7 +218,7 @@ def test_recorded_errors_are_those_of_the_skis_corners():
     half = 0.5 * np.array([skeleton.ski_length, skeleton.ski_width, 0.0])
     corners = np.array([(x, y, 0.0) for x in (1, -1) for y in (1, -1)]) * half
     for i in range(0, len(recording.time), 30):
-        value = reference.at(recording.arc_length[i])[0]
+        value = reference.at(recording.progress[i])[0]
         np.testing.assert_allclose(value[reference.columns["com"]], recording.com_reference[i], atol=1e-9)
         assert recording.com_error[i] == pytest.approx(np.linalg.norm(recording.com[i] - recording.com_reference[i]))
         planned_place = value[reference.columns["ski_position"]].reshape(2, 3)
