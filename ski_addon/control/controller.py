@@ -20,8 +20,8 @@ class Command:
     """What the controller decided at one step.
 
     `torque` (31,) [N m]; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
-    `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle` (2,) [rad]
-    of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
+    `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle`
+    (2,) [rad] of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
     """
 
     torque: np.ndarray

@@ -18,7 +18,8 @@ class Track:
     (n, 3) are unit vectors, `curvature` (n,) [1/m] is within the surface, positive to the left; `normal_curvature`
     (n,) [1/m] is that of the ground under the track, positive in a hollow, and `torsion` (n,) [rad/m] how fast the
     ground's left side rises along it; `phase` (n,) int8 is +1 in a left turn, -1 in a right turn, 0 between; `turn`
-    (n,) counts turns from 1 (a transition belongs to the turn it leaves); `start_speed` [m/s].
+    (n,) counts turns from 1 (a transition belongs to the turn it leaves); `start_speed` [m/s]; from
+    `stop_from` [m] on the track runs straight down, so that the skier may stop.
     """
 
     arc_length: np.ndarray
@@ -31,6 +32,7 @@ class Track:
     phase: np.ndarray
     turn: np.ndarray
     start_speed: float
+    stop_from: float = np.inf
 
     def __post_init__(self) -> None:
         for value in vars(self).values():

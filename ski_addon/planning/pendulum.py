@@ -1,13 +1,16 @@
 """The balanced centre of mass: an inverted pendulum over the skis, planned as a boundary-value problem.
 
 The paper leans a rigid leg by the instantaneous force balance [SG19 Eq. 7, 14], which asks for a zero-moment point
-outside the stance whenever a turn changes fast. Here the sideways offset y of the centre of mass obeys
+outside the stance whenever a turn changes fast. Here the offset y of the centre of mass across the skis obeys the
+pendulum of [VP93 Eq. 1], written for a pivot under the middle of the skis that moves over any ground:
 
-    y'' - (omega^2 + (kappa v)^2) y = g_left - kappa v^2,      omega^2 = (g_normal + h'') / h
+    y'' - (N / h + w_e^2 + w_n^2) y = g_a + D_a - p''_a + w_e' h + 2 w_e h' - w_a w_n h
+    N = h'' + w_e' y + 2 w_e y' + w_n w_a y - (w_e^2 + w_a^2) h + v^2 kappa_n - g_n
 
-in the frame that moves and turns with the skis (curvature kappa, speed v, height h above the snow), which is the
-pendulum of [VP93 Eq. 1] written for a pivot under the middle of the skis. It has one bounded solution; it agrees with
-the paper in a steady turn, tan(lean) = v^2 / (g r), and anticipates transitions.
+in the frame of the skis (e along, a across to the left, n up) that turns with angular velocity w; h is the height over
+the snow, p'' the acceleration of the pivot, D air drag, N the snow's normal force per mass. On a plane, without
+skidding, only w_n = kappa v is left and a steady turn gives tan(lean) = v^2 / (g r). It has one bounded solution, which
+anticipates transitions.
 """
 
 from __future__ import annotations
@@ -16,16 +19,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .line import Line
+
 STEEPEST = np.deg2rad(75.0)
 """Lean [rad] at which the iteration is held; a plan that needs it is refused later."""
 PADDING_TIME = 1.6
 """Time [s] by which a plan is extended at constant values so that its ends do not disturb it."""
+MOST_ITERATIONS = 400
+LONGEST_SMOOTHING = 0.6
+"""Time [s] over which legs may spread a change of height to keep their load."""
 
 
 @dataclass(frozen=True)
 class Pendulum:
-    """Sideways offset `y` and height `h` (n,) [m] of the centre of mass over the skis, the rates of both [m/s] and
-    the snow's normal force per mass `normal` [m/s^2].
+    """Offset `y` across the skis and height `h` (n,) [m] of the centre of mass, the rates of both [m/s], the snow's
+    normal force per mass `normal` [m/s^2] and `swing` [m/s^2], what the body's motion over the skis adds to the
+    acceleration along them.
     """
 
     y: np.ndarray
@@ -33,6 +42,7 @@ class Pendulum:
     h: np.ndarray
     h_rate: np.ndarray
     normal: np.ndarray
+    swing: np.ndarray
 
     @property
     def inclination(self) -> np.ndarray:
@@ -40,52 +50,106 @@ class Pendulum:
         return np.arctan2(self.y, self.h)
 
 
-def balanced_pendulum(
-    time: np.ndarray,
-    curvature: np.ndarray,
-    speed: np.ndarray,
-    gravity_left: np.ndarray,
-    gravity_normal: np.ndarray,
-    length: float,
-    least_load: float,
-    extension: float,
-) -> Pendulum:
-    """Return the pendulum that is balanced along a track.
-
-    All arrays are (n,) over `time` [s]; `gravity_left` and `gravity_normal` are gravity's parts to the left within
-    the surface and into it [m/s^2]; `length` [m] is the height of the centre of mass of the upright stance,
-    `least_load` the least normal force in units of the skier's own, `extension` [m] how far the legs may lengthen.
+@dataclass(frozen=True)
+class Legs:
+    """What the legs can do: `length` [m] is the height of the centre of mass of the upright stance, `extension` and
+    `retraction` [m] how much they may lengthen and shorten it, `least_load` the least normal force in units of the
+    skier's own, `rise` (n,) [m] how much higher the skier wants to stand than that to absorb bumps.
     """
-    from scipy.ndimage import gaussian_filter1d
 
-    time, curvature, speed, gravity_left, gravity_normal = _padded(time, curvature, speed, gravity_left, gravity_normal)
-    h = np.full_like(time, length)
-    normal = gravity_normal.copy()
-    y = np.zeros_like(time)
+    length: float
+    extension: float
+    retraction: float
+    least_load: float
+    rise: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Pivot:
+    """The padded terms of the pendulum that do not depend on it, (n,) each: angular velocity of the skis' frame
+    `along`, `across`, `up` [rad/s], the force that drives it sideways `side`, and the normal force `rest` of a
+    centre of mass that moves with the skis [m/s^2].
+    """
+
+    time: np.ndarray
+    along: np.ndarray
+    across: np.ndarray
+    up: np.ndarray
+    side: np.ndarray
+    rest: np.ndarray
+    into: np.ndarray
+    rise: np.ndarray
+
+
+def upright(line: Line, height: float) -> Pendulum:
+    """Return the pendulum of a skier who stands upright from the snow at `height` [m], whatever the forces."""
+    zero = np.zeros_like(line.time)
+    return Pendulum(zero, zero, np.full_like(zero, height), zero, line.gravity_into, zero)
+
+
+def balanced_pendulum(line: Line, legs: Legs) -> Pendulum:
+    """Return the pendulum that is balanced along `line` on `legs`."""
+    pivot = _pivot(line, legs)
+    y, h = np.zeros_like(pivot.time), legs.length + pivot.rise
     smoothing = 0.0
-    step = float(np.median(np.diff(time)))
-    for _ in range(60):
-        solved = _bounded_solution(time, normal / h + (curvature * speed) ** 2, gravity_left - curvature * speed**2)
-        solved = np.clip(solved, -length * np.sin(STEEPEST), length * np.sin(STEEPEST))
-        change = float(np.max(np.abs(solved - y)))
-        y = y + 0.6 * (solved - y)  # the undamped iteration alternates when the lean is large
-        rigid = np.sqrt(length**2 - y**2)
-        if smoothing:
-            room = np.sqrt((length + extension) ** 2 - y**2)
-            h = np.minimum(gaussian_filter1d(rigid, smoothing / step, mode="nearest"), room)
-            h = gaussian_filter1d(h, 0.03 / step, mode="nearest")
-        else:
-            h = rigid
-        vertical = second_derivative(time, h)
-        normal = np.maximum(gravity_normal + vertical, 0.05 * gravity_normal)
-        if change < 1e-7:
-            load = np.min((gravity_normal + vertical) / gravity_normal)
-            if load >= least_load or smoothing > 0.6:
+    for _ in range(MOST_ITERATIONS):
+        normal = _normal(pivot, y, h)
+        held = np.maximum(normal, 0.05 * pivot.into)
+        stiffness = held / h + pivot.along**2 + pivot.up**2
+        turning = derivative(pivot.time, pivot.along) * h + 2.0 * pivot.along * derivative(pivot.time, h)
+        solved = _bounded_solution(pivot.time, stiffness, pivot.side + turning - pivot.across * pivot.up * h)
+        limit = legs.length * np.sin(STEEPEST)
+        change = np.clip(solved, -limit, limit) - y
+        y = y + change * 0.8 / (1.0 + (y / h) ** 2)  # the height falls as the lean grows: a full step would overshoot
+        h = _height(pivot, y, legs, smoothing)
+        if np.max(np.abs(change)) < 1e-7:
+            load = np.min(_normal(pivot, y, h) / pivot.into)
+            if load >= legs.least_load or smoothing > LONGEST_SMOOTHING:
                 break
             smoothing = max(1.25 * smoothing, 0.04)
+            h = _height(pivot, y, legs, smoothing)
+    return _cut(pivot, y, h)
+
+
+def _pivot(line: Line, legs: Legs) -> _Pivot:
+    speed, cosine, sine = line.speed, np.cos(line.steering), np.sin(line.steering)
+    along = speed * (line.torsion * cosine - line.normal_curvature * sine)
+    across = -speed * (line.normal_curvature * cosine + line.torsion * sine)
+    up = line.curvature * speed + line.steering_rate
+    pull = line.gravity_left * cosine - (line.gravity_along - line.drag) * sine
+    moved = line.curvature * speed**2 * cosine - line.acceleration * sine
+    rest = line.gravity_into + speed**2 * line.normal_curvature
+    return _Pivot(*_padded(line.time, along, across, up, pull - moved, rest, line.gravity_into, legs.rise))
+
+
+def _normal(pivot: _Pivot, y: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """Return the normal force per mass (n,) [m/s^2] of a body at `y`, `h` (n,) [m]."""
+    time = pivot.time
+    turning = derivative(time, pivot.along) * y + 2.0 * pivot.along * derivative(time, y) + pivot.up * pivot.across * y
+    return second_derivative(time, h) + turning - (pivot.along**2 + pivot.across**2) * h + pivot.rest
+
+
+def _height(pivot: _Pivot, y: np.ndarray, legs: Legs, smoothing: float) -> np.ndarray:
+    """Return the height (n,) [m] of a rigid lean, smoothed over `smoothing` [s] within what the legs can reach."""
+    from scipy.ndimage import gaussian_filter1d
+
+    rigid = np.sqrt(legs.length**2 - y**2)
+    if smoothing:
+        step = float(pivot.time[1] - pivot.time[0])
+        room = np.sqrt((legs.length + legs.extension) ** 2 - y**2)
+        rigid = np.minimum(gaussian_filter1d(rigid, smoothing / step, mode="nearest"), room)
+        rigid = gaussian_filter1d(rigid, 0.03 / step, mode="nearest")
+    return rigid * (1.0 + pivot.rise / legs.length)
+
+
+def _cut(pivot: _Pivot, y: np.ndarray, h: np.ndarray) -> Pendulum:
+    """Return the pendulum without the padding."""
+    time, up, along, across = pivot.time, pivot.up, pivot.along, pivot.across
     y_rate, h_rate = derivative(time, y), derivative(time, h)
+    swing = derivative(time, across) * h - derivative(time, up) * y + 2.0 * (across * h_rate - up * y_rate)
+    swing += along * (across * y + up * h)
     inner = slice(_PAD, -_PAD)
-    return Pendulum(y[inner], y_rate[inner], h[inner], h_rate[inner], (gravity_normal + vertical)[inner])
+    return Pendulum(*(array[inner] for array in (y, y_rate, h, h_rate, _normal(pivot, y, h), swing)))
 
 
 _PAD = 320

@@ -22,6 +22,9 @@ BOOT_PLAY = np.deg2rad(4.0)
 """How much of the boot's 5 degrees of side play the plan uses; approached smoothly."""
 SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
 """Lean taken back by spine and head, in units of the pelvis's angulation angle."""
+PELVIS_TURN = 0.4
+SPINE_TURN = {"abdomen_z": 0.15, "chest_z": 0.20, "head_z": 0.20}
+"""How far pelvis and spine turn back from skidding skis towards the direction of travel, in units of the steering."""
 
 ARM_RAISE, ARM_SPREAD, WRIST_TURN = 0.35, 0.35, 0.45
 """How arms follow the lean, in units of the lean: both swing towards the outside; the inside arm rises and its wrist
@@ -46,24 +49,26 @@ class PlannedPoses:
 def plan_poses(
     skeleton: Skeleton,
     stance: Stance,
-    world_from_track: np.ndarray,
+    world_from_skis: np.ndarray,
     position: np.ndarray,
     com: np.ndarray,
     inclination: np.ndarray,
     angulation: np.ndarray,
+    steering: np.ndarray,
 ) -> PlannedPoses:
     """Return poses whose skis lie on the track and whose centre of mass is `com` (n, 3) [m, world].
 
-    `world_from_track` (n, 3, 3) has columns tangent, left, normal; `position` (n, 3) is the middle between the skis;
-    `inclination` (n,) [rad] is positive to the left and `angulation` (n,) is beta_a, -1..0.
+    `world_from_skis` (n, 3, 3) has columns along the skis, across to the left, and up from the snow; `position` (n, 3)
+    is the middle between the skis; `inclination` (n,) [rad] is positive to the left, `angulation` (n,) is beta_a,
+    -1..0, and `steering` (n,) [rad] the skis' angle from the track, out of which the upper body turns back.
     """
     count = len(position)
     qpos = np.repeat(stance.qpos[None], count, axis=0)
-    _lean_upper_body(skeleton, qpos, world_from_track, inclination, angulation)
+    _lean_upper_body(skeleton, qpos, world_from_skis, inclination, angulation, steering)
     qpos[:, :3] += com - _com(skeleton, qpos)
     edge = np.repeat(inclination[:, None], 2, axis=1)
     for _ in range(25):
-        ski_position, ski_rotation = ski_frames(skeleton, world_from_track, position, edge)
+        ski_position, ski_rotation = ski_frames(skeleton, world_from_skis, position, edge)
         legs = _solve_legs(skeleton, qpos, ski_position, ski_rotation)
         moved = com - _com(skeleton, qpos)
         qpos[:, :3] += moved
@@ -77,25 +82,32 @@ def plan_poses(
 
 
 def ski_frames(
-    skeleton: Skeleton, world_from_track: np.ndarray, position: np.ndarray, edge_angle: np.ndarray
+    skeleton: Skeleton, world_from_skis: np.ndarray, position: np.ndarray, edge_angle: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the skis' centres (n, 2, 3) [m, world] and rotations (n, 2, 3, 3) at `edge_angle` (n, 2) [rad].
 
     The skis stand apart within the snow surface; each is raised so that its lower edge, not its middle, is on it.
     """
-    rotation = world_from_track[:, None] @ rotation_about("x", -edge_angle)
+    rotation = world_from_skis[:, None] @ rotation_about("x", -edge_angle)
     half = 0.5 * skeleton.stance_width * np.array([1.0, -1.0])
-    sideways = half[None, :, None] * world_from_track[:, None, :, 1]
-    lift = edge_lift(edge_angle, skeleton.ski_width)[..., None] * world_from_track[:, None, :, 2]
+    sideways = half[None, :, None] * world_from_skis[:, None, :, 1]
+    lift = edge_lift(edge_angle, skeleton.ski_width)[..., None] * world_from_skis[:, None, :, 2]
     return position[:, None] + sideways + lift, rotation
 
 
 def _lean_upper_body(
-    skeleton: Skeleton, qpos: np.ndarray, frames: np.ndarray, inclination: np.ndarray, angulation: np.ndarray
+    skeleton: Skeleton,
+    qpos: np.ndarray,
+    frames: np.ndarray,
+    inclination: np.ndarray,
+    angulation: np.ndarray,
+    steering: np.ndarray,
 ) -> None:
     pelvis_lean = (1.0 + angulation) * inclination
-    pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("y", float(PELVIS_PITCH))
-    qpos[:, 3:7] = quaternion_from_matrix(pelvis)
+    pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("z", -PELVIS_TURN * steering)
+    qpos[:, 3:7] = quaternion_from_matrix(pelvis @ rotation_about("y", float(PELVIS_PITCH)))
+    for hinge, share in SPINE_TURN.items():
+        qpos[:, skeleton.qpos_of(hinge)] -= share * steering
     for hinge, share in SPINE_SHARE.items():
         qpos[:, skeleton.qpos_of(hinge)] += share * -angulation * inclination
     for side, inside in (("L", inclination), ("R", -inclination)):
@@ -127,6 +139,9 @@ def _com(skeleton: Skeleton, qpos: np.ndarray) -> np.ndarray:
     return centre_of_mass(skeleton, *forward_kinematics(skeleton, qpos))
 
 
-def track_frames(tangent: np.ndarray, surface_normal: np.ndarray) -> np.ndarray:
-    """Return world_from_track (n, 3, 3) with columns tangent, left, surface normal."""
-    return matrix_from_columns(tangent, np.cross(surface_normal, tangent), surface_normal)
+def skis_frames(tangent: np.ndarray, surface_normal: np.ndarray, steering: np.ndarray) -> np.ndarray:
+    """Return world_from_skis (n, 3, 3) with columns along skis turned by `steering` (n,) [rad] from the track's
+    `tangent`, across them to the left, and the surface normal.
+    """
+    track = matrix_from_columns(tangent, np.cross(surface_normal, tangent), surface_normal)
+    return track @ rotation_about("z", steering)

@@ -13,6 +13,8 @@ from ..frames import quaternion_from_matrix, rotation_about
 
 PELVIS_PITCH = np.deg2rad(20.0)
 """Forward tilt of the pelvis in the stance."""
+STRAIGHTEST_KNEE, DEEPEST_KNEE = np.deg2rad(15.0), np.deg2rad(118.0)
+"""Knee bends between which the legs absorb bumps and keep their load."""
 UPPER_BODY_DEG = {
     "abdomen_y": 13.0,
     "chest_y": 12.0,
@@ -29,12 +31,13 @@ UPPER_BODY_DEG = {
 @dataclass(frozen=True)
 class Stance:
     """The balanced pose `qpos` (nq,) over skis side by side on flat ground at the origin, its centre of mass's
-    `height` [m] over the snow, and `extension` [m], how much higher the legs can push it.
+    `height` [m] over the snow, and how much higher and lower the legs can bring it, `extension`, `retraction` [m].
     """
 
     qpos: np.ndarray
     height: float
     extension: float
+    retraction: float
 
 
 def build_stance(skeleton: Skeleton, knee_bend: float) -> Stance:
@@ -42,15 +45,21 @@ def build_stance(skeleton: Skeleton, knee_bend: float) -> Stance:
     from scipy.optimize import brentq
 
     thigh, shank = skeleton.lengths["thigh"], skeleton.lengths["shank"]
-    reach = np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(knee_bend))
+
+    def reach_at(knee: float) -> float:
+        return float(np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(knee)))
+
+    reach = reach_at(knee_bend)
 
     def forward(angle: float) -> float:
         return float(_com(skeleton, _pose(skeleton, reach, angle))[0])
 
     angle = brentq(forward, -0.9, 0.9, xtol=1e-12)
     qpos = _pose(skeleton, reach, angle)
-    straight = np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(np.deg2rad(15.0)))
-    return Stance(qpos, float(_com(skeleton, qpos)[2]), float((straight - reach) * np.cos(angle)))
+    extension, retraction = reach_at(STRAIGHTEST_KNEE) - reach, reach - reach_at(DEEPEST_KNEE)
+    return Stance(
+        qpos, float(_com(skeleton, qpos)[2]), float(extension * np.cos(angle)), float(retraction * np.cos(angle))
+    )
 
 
 def upper_body_angles(skeleton: Skeleton) -> dict[int, float]:

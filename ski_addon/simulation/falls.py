@@ -22,7 +22,7 @@ SKI_LEFT_TRACK = 0.4
 TELLING_TIME = 0.03
 """A hinge at its torque limit for this long [s] before a fall is named as its reason."""
 STALLED, GLIDING = 0.02, 0.5
-"""The skier has come to a stop where progress is below the first [of planned] and the plan faster than the second [m/s]."""
+"""Progressing slower than the first, of what is planned, where more than the second [m/s] is planned, is a stop."""
 
 
 @dataclass(frozen=True)

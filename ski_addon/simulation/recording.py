@@ -73,8 +73,9 @@ class Recording:
     `header`: dict with `spec` (the run document as TOML), `spec_hash`, `model_hash`, `versions`, `seed`, `status`
     ("finished", "fell", "cancelled", "diverged"), `status_detail` ({time, what, where, why} or {}), `body_names`,
     `joint_names`, `actuated_joint_names`, `time_step`, `gravity`, `mass`.
-    Arrays: `time` [s], `arc_length` of the skier's place [m], `progress` in the plan [s, planned], `speed` of the centre of mass [m/s]; `qpos` (n, 42),
-    `qvel` (n, 41), `tau` (n, 31) [N m]; `snow_force` (n, 2, 3) on each ski [N, world]; `snow_edge_force` (n, 2, 2)
+    Arrays: `time` [s], `arc_length` of the skier's place [m], `progress` in the plan [s, planned], `speed` of the
+    centre of mass [m/s]; `qpos` (n, 42), `qvel` (n, 41), `tau` (n, 31) [N m]; `snow_force` (n, 2, 3) on each ski
+    [N, world]; `snow_edge_force` (n, 2, 2)
     normal force by ski and edge [N], `snow_edge_side` (n, 2, 2) side force, positive to the left [N];
     `inclination` (n,), `edge_angle` (n, 2) [rad] as they were, `edge_angle_reference` (n, 2); `com`, `com_reference`
     (n, 3) [m, world]; `ski_error` (n,) largest error of a ski corner [m], `com_error` (n,) [m]; `turn_phase` (n,),

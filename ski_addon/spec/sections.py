@@ -102,6 +102,9 @@ class TechniqueSpec:
         word="auto",
     )
     knee_bend_deg: float = number(60.0, 30, 100, "deg", "Knee bend", "Knee bend of the middle stance")
+    absorption: float = number(
+        1.0, 0, 1, "", "Absorption", "How much of the bumps the legs take up, as far as they reach: 0 = none"
+    )
     load_min: float = number(
         0.25,
         0,

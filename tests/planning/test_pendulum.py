@@ -5,22 +5,29 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ski_addon.planning.pendulum import (
-    balanced_pendulum,
-    derivative,
-    second_derivative,
-    speed_for_lean,
-)
+from ski_addon.frames import rotation_about
+from ski_addon.planning.line import Line
+from ski_addon.planning.pendulum import Legs, balanced_pendulum, derivative, second_derivative, speed_for_lean
 
 G, LENGTH = 9.81, 0.85
 TIME = np.arange(0.0, 4.0, 0.005)
 ONES = np.ones_like(TIME)
 
 
-def pendulum(curvature, speed, left=0.0, into=G, least_load=0.25, extension=0.1):
-    return balanced_pendulum(
-        TIME, curvature * ONES, speed * ONES, left * ONES, into * ONES, LENGTH, least_load, extension
-    )
+def line(curvature, speed, left=0.0, into=G, **more) -> Line:
+    """A line of `curvature` at `speed`; whatever else a line has is zero unless given."""
+    given = {"time": TIME, "curvature": curvature, "speed": speed, "gravity_left": left, "gravity_into": into, **more}
+    names = [name for name in Line.__dataclass_fields__ if name not in ("position", "tangent", "surface_normal")]
+    empty = {name: np.zeros((len(TIME), 3)) for name in ("position", "tangent", "surface_normal")}
+    return Line(**empty, **{name: given.get(name, 0.0) * ONES for name in names})
+
+
+def legs(least_load=0.25, extension=0.1, rise=0.0) -> Legs:
+    return Legs(LENGTH, extension, 0.2, least_load, rise * ONES)
+
+
+def pendulum(curvature, speed, left=0.0, into=G, **more):
+    return balanced_pendulum(line(curvature, speed, left, into, **more), legs())
 
 
 @pytest.mark.parametrize(("speed", "radius"), [(5.0, 15.0), (9.0, 15.0), (9.0, -10.0), (12.0, 25.0)])
@@ -58,9 +65,7 @@ def test_claim_17_straight_on_flat_ground_is_upright():
 def swinging(least_load=0.0, quick=0.12, bend=0.1, speed=9.0, extension=0.1):
     """A turn to the left that changes to the right at 2 s, within about 3 `quick` seconds."""
     curvature = -bend * np.tanh((TIME - 2.0) / quick)
-    return curvature, balanced_pendulum(
-        TIME, curvature, speed * ONES, 0 * ONES, G * ONES, LENGTH, least_load, extension
-    )
+    return curvature, balanced_pendulum(line(curvature, speed), legs(least_load, extension))
 
 
 def test_pendulum_obeys_its_equation_of_motion():
@@ -99,10 +104,7 @@ def test_extension_is_the_limit_of_the_legs():
 
 def test_mirrored_turn_gives_the_mirrored_lean():
     bend = 0.1 * np.sin(2.0 * TIME) + 0.02
-    left, right = (
-        balanced_pendulum(TIME, side * bend, 8 * ONES, side * 0.3 * ONES, G * ONES, LENGTH, 0.25, 0.1)
-        for side in (1, -1)
-    )
+    left, right = (pendulum(side * bend, 8.0, left=side * 0.3) for side in (1, -1))
     np.testing.assert_allclose(left.y, -right.y, atol=1e-12)
     np.testing.assert_allclose(left.h, right.h, atol=1e-12)
 
@@ -127,3 +129,103 @@ def test_speed_for_a_lean_where_the_track_does_not_ask_for_one():
     bends, pulls = np.array([0.0, -0.1, 0.1]), np.array([0.0, 0.0, -30.0])
     speeds = speed_for_lean(0.5, bends, pulls, np.full(3, G), LENGTH)
     np.testing.assert_array_equal(speeds, [np.inf, np.inf, 0.0])
+
+
+# -- any ground, skidding ------------------------------------------------------------
+
+
+def accelerations(ridden: Line, swing) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Acceleration of the centre of mass along the skis, across and up, by numeric integration of the skis' frame and
+    second differences of the world position; the pivot starts at the origin.
+    """
+    step = TIME[1] - TIME[0]
+    frame, place = np.eye(3), np.zeros(3)
+    frames, places = [], []
+    spin_along = ridden.speed[:, None] * np.stack((ridden.torsion, -ridden.normal_curvature, ridden.curvature), axis=1)
+    for i in range(len(TIME)):
+        frames.append(frame)
+        places.append(place)
+        middle = 0.5 * (spin_along[i] + spin_along[min(i + 1, len(TIME) - 1)])
+        half = frame @ rotation_vector(0.5 * step * middle)
+        speed = 0.5 * (ridden.speed[i] + ridden.speed[min(i + 1, len(TIME) - 1)])
+        place = place + step * speed * half[:, 0]
+        frame = frame @ rotation_vector(step * middle)
+    track = np.array(frames)
+    skis = track @ rotation_about("z", ridden.steering)
+    com = np.array(places) + swing.y[:, None] * skis[..., 1] + swing.h[:, None] * skis[..., 2]
+    second = np.array([second_derivative(TIME, com[:, axis]) for axis in range(3)]).T
+    return tuple(np.sum(second * skis[..., axis], axis=1) for axis in range(3))
+
+
+def rotation_vector(vector):
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_rotvec(vector).as_matrix()
+
+
+UNEVEN = {
+    "torsion": 0.02 * np.sin(1.3 * TIME),
+    "normal_curvature": 0.03 * np.cos(2.1 * TIME),
+    "steering": 0.3 * np.sin(0.9 * TIME) ** 2,
+    "steering_rate": 0.54 * np.sin(0.9 * TIME) * np.cos(0.9 * TIME),
+    "acceleration": 0.8 * ONES,
+}
+
+
+@pytest.mark.parametrize("name", ["plane", "torsion", "normal_curvature", "steering", "acceleration", "all"])
+def test_force_on_any_ground_points_from_the_skis_through_the_body(name):
+    """Against the motion itself: the frame is integrated and the world path differentiated twice."""
+    more = {} if name == "plane" else UNEVEN if name == "all" else {name: UNEVEN[name]}
+    if "steering" in more:
+        more["steering_rate"] = UNEVEN["steering_rate"]
+    speed = 7.0 + (0.8 * TIME if "acceleration" in more else 0.0)
+    ridden = line(0.08 * np.sin(1.7 * TIME), speed * ONES, left=0.4, **more)
+    swing = balanced_pendulum(ridden, legs(least_load=0.0))
+    along, across, up = accelerations(ridden, swing)
+    inner = slice(20, -20)
+    np.testing.assert_allclose((up + G)[inner], swing.normal[inner], atol=0.03)
+    pull = 0.4 * np.cos(ridden.steering)
+    np.testing.assert_allclose((across - pull)[inner], (swing.normal * swing.y / swing.h)[inner], atol=0.03)
+    moved = ridden.acceleration * np.cos(ridden.steering) + ridden.curvature * speed**2 * np.sin(ridden.steering)
+    np.testing.assert_allclose(along[inner], (moved + swing.swing)[inner], atol=0.03)
+
+
+@pytest.mark.parametrize("lean", [50.0, 58.0, 64.0])
+def test_deep_leans_are_found(lean):
+    """The undamped iteration diverges beyond 45 degrees: the height falls as the lean grows."""
+    bend = 1.0 / 16.0
+    speed = speed_for_lean(np.deg2rad(lean), np.array([bend]), np.zeros(1), np.array([G]), LENGTH)[0]
+    assert np.rad2deg(pendulum(bend, speed).inclination[400]) == pytest.approx(lean, abs=1e-4)
+
+
+def test_swing_from_deep_lean_to_deep_lean_is_balanced():
+    curvature = -np.tanh((TIME - 2.0) / 0.35) / 16.0
+    deep = balanced_pendulum(line(curvature, 15.5), legs())
+    assert np.rad2deg(deep.inclination.max()) > 54 and np.rad2deg(deep.inclination.min()) < -54
+    assert deep.normal.min() >= 0.25 * G
+    right_hand = (deep.normal / deep.h + (curvature * 15.5) ** 2) * deep.y - curvature * 15.5**2
+    np.testing.assert_allclose(second_derivative(TIME, deep.y)[3:-3], right_hand[3:-3], atol=2e-2)
+
+
+def test_a_stop_leans_back_against_the_motion():
+    """Skis across the track (90 degrees left): the body leans to their left, uphill, by its deceleration."""
+    stop = pendulum(0.0, 5.0, steering=np.pi / 2, acceleration=-4.0)
+    assert np.tan(stop.inclination[400]) == pytest.approx(4.0 / G, rel=1e-6)
+
+
+def test_standing_across_a_slope_is_upright_in_the_world():
+    slope = np.deg2rad(20)
+    still = pendulum(0.0, 0.0, into=G * np.cos(slope), gravity_along=G * np.sin(slope), steering=np.pi / 2)
+    assert still.inclination[400] == pytest.approx(slope, rel=1e-6)
+
+
+def test_legs_that_stand_higher_keep_the_lean():
+    low, high = (balanced_pendulum(line(0.08, 8.0), legs(rise=rise)) for rise in (-0.1, 0.05))
+    assert high.h[400] > low.h[400]
+    assert high.inclination[400] == pytest.approx(low.inclination[400], abs=0.05)
+
+
+def test_height_that_follows_a_wave_loads_and_unloads():
+    rise = 0.05 * np.sin(4.0 * TIME)
+    wave = balanced_pendulum(line(0.0, 5.0), Legs(LENGTH, 0.1, 0.2, 0.0, rise))
+    np.testing.assert_allclose(wave.normal[5:-5], (G - 0.05 * 16.0 * np.sin(4.0 * TIME))[5:-5], atol=1e-3)
