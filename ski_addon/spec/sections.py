@@ -50,11 +50,22 @@ class SkierSpec:
 
 @dataclass(frozen=True)
 class SlopeSpec:
-    """The ground."""
+    """The ground: a plane, bumps across the fall line, a field of moguls, or a grid of heights."""
 
-    kind: str = choice("plane", ("plane",), "Slope", "Shape of the ground")
+    kind: str = choice("plane", ("plane", "bumps"), "Slope", "Shape of the ground; keys of other shapes do nothing")
     angle_deg: float = number(
         10.0, 0, 45, "deg", "Slope angle", "Steepness of the slope, downhill along +x", required=True
+    )
+    bump_count: int = whole(10, 1, 500, "bumps", "Bumps", "Number of crests, with troughs between them")
+    bump_height: float = number(
+        0.3, 0.02, 3, "m", "Bump height", "Height of an arc over its chord; from trough to crest it is twice that"
+    )
+    bump_width: float = number(8.0, 1, 50, "m", "Bump width", "Chord of an arc; from crest to crest it is twice that")
+    bump_start: float = number(
+        10.0, 0, 1000, "m", "Bump start", "Distance down the slope to where bumps or moguls begin"
+    )
+    bump_fillet: float = number(
+        0.25, 0.05, 1, "", "Bump fillet", "Share of the width over which a crest blends into a trough", advanced=True
     )
 
 

@@ -1,15 +1,19 @@
-"""The ground: height and normal at any horizontal position, batched."""
+"""The ground: height, slope and normal at any horizontal position, batched."""
 
 from __future__ import annotations
 
-from ..spec import SlopeSpec
-from .plane import PlaneTerrain, Terrain
+from .build import build_terrain
+from .bumps import BumpTrain, bump_angle, bump_radius
+from .plane import PlaneTerrain
+from .relief import ReliefTerrain
+from .terrain import Terrain
 
-__all__ = ["PlaneTerrain", "Terrain", "build_terrain"]
-
-
-def build_terrain(slope: SlopeSpec) -> Terrain:
-    """Return the terrain that `slope` asks for."""
-    import math
-
-    return PlaneTerrain(math.radians(slope.angle_deg))
+__all__ = [
+    "BumpTrain",
+    "PlaneTerrain",
+    "ReliefTerrain",
+    "Terrain",
+    "build_terrain",
+    "bump_angle",
+    "bump_radius",
+]
