@@ -52,7 +52,9 @@ class SkierSpec:
 class SlopeSpec:
     """The ground: a plane, bumps across the fall line, a field of moguls, or a grid of heights."""
 
-    kind: str = choice("plane", ("plane", "bumps"), "Slope", "Shape of the ground; keys of other shapes do nothing")
+    kind: str = choice(
+        "plane", ("plane", "bumps", "moguls"), "Slope", "Shape of the ground; keys of other shapes do nothing"
+    )
     angle_deg: float = number(
         10.0, 0, 45, "deg", "Slope angle", "Steepness of the slope, downhill along +x", required=True
     )
@@ -66,6 +68,19 @@ class SlopeSpec:
     )
     bump_fillet: float = number(
         0.25, 0.05, 1, "", "Bump fillet", "Share of the width over which a crest blends into a trough", advanced=True
+    )
+    mogul_count: int = whole(8, 1, 500, "moguls", "Moguls", "Number of moguls down a column")
+    mogul_height: float = number(0.5, 0.02, 2, "m", "Mogul height", "Height from trough to crest")
+    mogul_spacing: float = number(3.5, 1, 30, "m", "Mogul spacing", "Distance from crest to crest down a column")
+    mogul_across: float | Literal["auto"] = number(
+        "auto",
+        1,
+        30,
+        "m",
+        "Mogul columns",
+        "Distance between neighbouring columns, which are offset by half a spacing; auto = the spacing",
+        word="auto",
+        advanced=True,
     )
 
 

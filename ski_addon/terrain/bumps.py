@@ -12,12 +12,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 
-One = TypeVar("One", float, np.ndarray)
-"""One number or many, alike."""
+from .terrain import One
 
 
 def bump_radius(height: float, width: float) -> float:

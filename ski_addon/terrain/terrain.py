@@ -7,11 +7,13 @@ milliseconds). A ground answers both alike; with plain floats it takes a short w
 from __future__ import annotations
 
 import math
-from typing import Protocol, TypeGuard
+from typing import Protocol, TypeGuard, TypeVar
 
 import numpy as np
 
 Number = np.ndarray | float
+One = TypeVar("One", float, np.ndarray)
+"""One number or many, in a formula that serves both."""
 Extent = tuple[float, float, float, float]
 EVERYWHERE: Extent = (-math.inf, math.inf, -math.inf, math.inf)
 """The extent of a ground without an edge."""

@@ -16,6 +16,9 @@ GROUNDS = {
     "bumps": SlopeSpec(kind="bumps", angle_deg=8, bump_start=5, bump_count=3),
     "steep bumps": SlopeSpec(kind="bumps", angle_deg=25, bump_height=0.6, bump_width=4, bump_start=5, bump_fillet=0.6),
     "paper's 3 m bumps": SlopeSpec(kind="bumps", angle_deg=5, bump_height=3, bump_width=8, bump_start=5, bump_count=2),
+    "moguls": SlopeSpec(kind="moguls", angle_deg=20, bump_start=3),
+    "wide moguls": SlopeSpec(kind="moguls", angle_deg=10, bump_start=3, mogul_across=6.0, mogul_height=0.8),
+    "one steep mogul": SlopeSpec(kind="moguls", angle_deg=30, mogul_count=1, mogul_height=1.5, mogul_spacing=5.0),
 }
 PLACES = np.random.default_rng(1).uniform((-10, -20), (60, 20), size=(400, 2)).T
 
