@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from .build import build_terrain, mogul_crests, mogul_troughs
 from .bumps import BumpTrain, bump_angle, bump_radius
+from .grid import HeightGrid
 from .moguls import MogulField
 from .plane import PlaneTerrain
 from .reach import check_bumps
 from .relief import ReliefTerrain
+from .samples import grid_from_samples
 from .terrain import Terrain
 
 __all__ = [
     "BumpTrain",
+    "HeightGrid",
     "MogulField",
     "PlaneTerrain",
     "ReliefTerrain",
@@ -20,6 +23,7 @@ __all__ = [
     "bump_angle",
     "bump_radius",
     "check_bumps",
+    "grid_from_samples",
     "mogul_crests",
     "mogul_troughs",
 ]

@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import SpecError
 from ..spec import SlopeSpec
 from .bumps import BumpTrain
+from .grid_ground import build_grid
 from .moguls import MogulField
 from .plane import PlaneTerrain
 from .relief import STEEPEST, ReliefTerrain
@@ -16,10 +17,12 @@ from .terrain import Terrain
 
 
 def build_terrain(slope: SlopeSpec) -> Terrain:
-    """Return the terrain that `slope` asks for; raises `SpecError` for a shape that cannot be."""
+    """Return the terrain that `slope` asks for; raises `SkiAddonError` for a ground that cannot be."""
     angle = math.radians(slope.angle_deg)
     if slope.kind == "plane":
         return PlaneTerrain(angle)
+    if slope.kind == "grid":
+        return build_grid(slope)
     relief = build_relief(slope)
     _check_overhang(relief, slope)
     return ReliefTerrain(angle, relief)
