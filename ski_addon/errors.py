@@ -85,6 +85,22 @@ class PlanInfeasible(SkiAddonError):  # noqa: N818 - the name says what happened
         super().__init__(f"the track cannot be skied at {place}: {reason}{remedy}")
 
 
+class TerrainError(SkiAddonError):
+    """Data make no ground: `what` (a grid, a file) has a `problem`, at `index` with `value` if it is at one place."""
+
+    exit_code = 2
+
+    def __init__(
+        self, what: str, problem: str, hint: str, *, index: tuple[int, ...] = (), value: float | None = None
+    ) -> None:
+        self.what = what
+        self.problem = problem
+        self.hint = hint
+        self.index = index
+        self.value = value
+        super().__init__(f"{show_path(what)}: {problem}: {hint}")
+
+
 class MissingInputError(SkiAddonError):
     """An input file (or shipped preset) does not exist or cannot be read."""
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from .estimate import Estimate, estimate
 from .fields import FieldInfo
-from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, list_presets, preset_folder
+from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
 from .run_spec import SCHEMA_VERSION, RunSpec
 from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 from .table import SECTIONS, field_table, find_field, section_fields
@@ -32,6 +32,7 @@ __all__ = [
     "field_table",
     "find_field",
     "find_document",
+    "find_ground",
     "list_presets",
     "preset_folder",
     "section_fields",

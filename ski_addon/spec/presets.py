@@ -38,6 +38,31 @@ def list_presets(kind: str, folder: Path | None = None) -> tuple[Preset, ...]:
     return tuple(_read_preset(kind, path) for path in paths)
 
 
+def ground_beside(name: str, folder: Path) -> str:
+    """Return a `slope.grid_file` that was written in `folder` so that it can be found from anywhere.
+
+    The name of a shipped ground (without an ending) and whole paths stay as they are.
+    """
+    if not name or _is_shipped_ground(name) or os.path.isabs(name):
+        return name
+    return os.path.abspath(folder / name)
+
+
+def find_ground(name: str) -> Path:
+    """Return the path of a file of heights, or of a shipped ground by its name; raises `MissingInputError`."""
+    if not _is_shipped_ground(name):
+        return Path(name)
+    known = {path.stem: path for path in sorted(preset_folder("terrain").glob("*.np[yz]"))}
+    if name not in known:
+        hint = f"there is no such ground (shipped are {', '.join(known)}), and files of heights have an ending"
+        raise MissingInputError(name, hint)
+    return known[name]
+
+
+def _is_shipped_ground(name: str) -> bool:
+    return not Path(name).suffix and Path(name).name == name
+
+
 def find_document(name: str, kinds: tuple[str, ...] = ("runs",)) -> Path:
     """Return the path of a document given as a path, or as the name of a preset of one of `kinds`.
 

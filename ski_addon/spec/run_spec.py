@@ -12,6 +12,7 @@ from typing import Any
 
 from . import document, table, values
 from .fields import text
+from .presets import ground_beside
 from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SCHEMA_VERSION = 1
@@ -40,9 +41,10 @@ class RunSpec:
     def from_toml(cls, path: str | Path) -> RunSpec:
         """Read a run document; its required keys must be there, the others have defaults.
 
+        A relative `slope.grid_file` is one beside the document; the spec has its whole path.
         Raises `MissingInputError` if the file cannot be read and `SpecError` (naming file and line) if it is wrong.
         """
-        return cls.from_text(document.read_text(Path(path)), str(path))
+        return cls.from_text(document.read_text(Path(path)), str(path))._with_ground_beside(Path(path).parent)
 
     @classmethod
     def from_text(cls, written: str, source: str = "the run document") -> RunSpec:
@@ -69,10 +71,12 @@ class RunSpec:
     def with_overrides(self, overrides: Mapping[str, Any]) -> RunSpec:
         """Return a copy with dotted keys replaced, as `--set course.turn_radius=10` does.
 
-        Strings are read as TOML values; words need no quotes. Other values are taken as they are.
+        Strings are read as TOML values; words need no quotes. Other values are taken as they are. A relative
+        `slope.grid_file` is one in the present folder.
         """
         flat = {key: values.parse_text(table.find_field(key), value) for key, value in overrides.items()}
-        return self._merged(table.nested(flat))
+        changed = self._merged(table.nested(flat))
+        return changed._with_ground_beside(Path()) if "slope.grid_file" in flat else changed
 
     def with_part(self, path: str | Path) -> RunSpec:
         """Return a copy with the sections of a part document (a skier, a snow, a style) laid over this one.
@@ -82,7 +86,8 @@ class RunSpec:
         source = document.parse_document(document.read_text(Path(path)), str(path))
         part = {key: value for key, value in source.content.items() if key not in ("name", "description")}
         with source.errors_named():
-            return self._merged(part)
+            changed = self._merged(part)
+        return changed._with_ground_beside(Path(path).parent) if "grid_file" in part.get("slope", {}) else changed
 
     def validate(self) -> RunSpec:
         """Raise `SpecError` if any value has a wrong type or lies outside its range; return the spec itself."""
@@ -94,6 +99,11 @@ class RunSpec:
         """Return the SHA-256 hex digest of the canonical document and its schema version."""
         canonical = json.dumps([SCHEMA_VERSION, self.to_dict()], sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(canonical.encode()).hexdigest()
+
+    def _with_ground_beside(self, folder: Path) -> RunSpec:
+        """Return a copy whose `slope.grid_file`, written in `folder`, can be found from anywhere."""
+        path = ground_beside(self.slope.grid_file, folder)
+        return self if path == self.slope.grid_file else self._merged({"slope": {"grid_file": path}})
 
     def _merged(self, content: Mapping[str, Any]) -> RunSpec:
         """Return a checked copy with the given tables laid over this spec."""

@@ -50,11 +50,80 @@ class SkierSpec:
 
 @dataclass(frozen=True)
 class SlopeSpec:
-    """The ground."""
+    """The ground: a plane, bumps across the fall line, a field of moguls, or a grid of heights."""
 
-    kind: str = choice("plane", ("plane",), "Slope", "Shape of the ground")
+    kind: str = choice(
+        "plane", ("plane", "bumps", "moguls", "grid"), "Slope", "Shape of the ground; keys of other shapes do nothing"
+    )
     angle_deg: float = number(
-        10.0, 0, 45, "deg", "Slope angle", "Steepness of the slope, downhill along +x", required=True
+        10.0,
+        0,
+        45,
+        "deg",
+        "Slope angle",
+        "Steepness of the slope, downhill along +x; of a plane under a grid",
+        required=True,
+    )
+    bump_count: int = whole(10, 1, 500, "bumps", "Bumps", "Number of crests, with troughs between them")
+    bump_height: float = number(
+        0.3, 0.02, 3, "m", "Bump height", "Height of an arc over its chord; from trough to crest it is twice that"
+    )
+    bump_width: float = number(8.0, 1, 50, "m", "Bump width", "Chord of an arc; from crest to crest it is twice that")
+    bump_start: float = number(
+        10.0, 0, 1000, "m", "Bump start", "Distance down the slope to where bumps or moguls begin"
+    )
+    bump_fillet: float = number(
+        0.25, 0.05, 1, "", "Bump fillet", "Share of the width over which a crest blends into a trough", advanced=True
+    )
+    mogul_count: int = whole(8, 1, 500, "moguls", "Moguls", "Number of moguls down a column")
+    mogul_height: float = number(0.5, 0.02, 2, "m", "Mogul height", "Height from trough to crest")
+    mogul_spacing: float = number(3.5, 1, 30, "m", "Mogul spacing", "Distance from crest to crest down a column")
+    mogul_across: float | Literal["auto"] = number(
+        "auto",
+        1,
+        30,
+        "m",
+        "Mogul columns",
+        "Distance between neighbouring columns, which are offset by half a spacing; auto = the spacing",
+        word="auto",
+        advanced=True,
+    )
+    grid_file: str = text(
+        "",
+        1000,
+        "Height grid",
+        "File of heights (.npy, .npz, .csv, .txt, .asc, .png, .tif), beside the document or with its whole path; or a "
+        "shipped ground, such as rolling_hill",
+    )
+    grid_spacing: float | Literal["auto"] = number(
+        "auto", 0.01, 1000, "m", "Grid spacing", "Distance between samples; auto = as the file says", word="auto"
+    )
+    grid_height: float = number(10.0, 0.01, 10000, "m", "Grid height", "Height of white over black in an image")
+    grid_downhill: str = choice(
+        "bottom", ("bottom", "right", "top", "left"), "Grid downhill", "Side of the file or image that lies downhill"
+    )
+    grid_smoothing: float = number(
+        0.0, 0, 100, "m", "Grid smoothing", "Width over which heights are blurred, against steps and noise"
+    )
+    grid_start_down: float | Literal["auto"] = number(
+        "auto",
+        0,
+        100000,
+        "m",
+        "Start from the top",
+        "Distance from the grid's uphill edge to the start of the run; auto = as the file says, or 5 m",
+        word="auto",
+        advanced=True,
+    )
+    grid_start_across: float | Literal["auto"] = number(
+        "auto",
+        0,
+        100000,
+        "m",
+        "Start from the side",
+        "Distance from the grid's right edge, seen downhill, to the start; auto = as the file says, or the middle",
+        word="auto",
+        advanced=True,
     )
 
 

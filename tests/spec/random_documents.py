@@ -22,7 +22,8 @@ def random_value(info: FieldInfo, rng: random.Random) -> Any:
     if info.kind == CHOICE:
         return rng.choice(info.choices)
     if info.kind == TEXT:
-        return "".join(rng.choices(LETTERS, k=rng.choice((0, 1, 20, int(info.high)))))
+        written = "".join(rng.choices(LETTERS, k=rng.choice((0, 1, 20, int(info.high)))))
+        return f"/{written}"[: int(info.high)] if info.key.endswith("_file") else written  # a whole path stays as it is
     if info.word and rng.random() < 0.2:
         return info.word
     if info.kind == WHOLE:

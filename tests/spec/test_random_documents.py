@@ -65,7 +65,8 @@ def test_overrides_of_every_key_are_the_document_itself(documents, specs):
         values = {k: v for k, v in flat.items() if field_table()[k].kind != TEXT}  # text may look like a TOML string
         built = RunSpec(name=flat["name"], description=flat["description"]).with_overrides(values)
         action = dataclasses.replace(built.bake, action=flat["bake.action"])
-        assert dataclasses.replace(built, bake=action) == spec
+        ground = dataclasses.replace(built.slope, grid_file=flat["slope.grid_file"])
+        assert dataclasses.replace(built, bake=action, slope=ground) == spec
 
 
 def test_written_override_is_the_value_itself(specs):
