@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from .body import SkierModel, build_skier_model
 from .course import Track, build_track
 from .planning import MotionPlan, plan_motion
-from .simulation import Progress, Recording, Simulation, simulate
+from .simulation import Progress, Recording, Simulation, check_pushes, simulate
 from .spec import RunSpec
 from .terrain import Terrain, build_terrain
 
@@ -32,7 +32,9 @@ def make_plan(spec: RunSpec) -> Planned:
     terrain = build_terrain(spec.slope)
     track = build_track(spec, terrain)
     model = build_skier_model(spec.skier)
-    return Planned(spec, terrain, track, model, plan_motion(spec, track, model))
+    plan = plan_motion(spec, track, model)
+    check_pushes(spec, plan.duration)
+    return Planned(spec, terrain, track, model, plan)
 
 
 def start_simulation(planned: Planned) -> Simulation:

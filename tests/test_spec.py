@@ -8,8 +8,8 @@ import tomllib
 import pytest
 
 from ski_addon.errors import MissingInputError, SpecError
-from ski_addon.spec import SECTIONS, CourseSpec, RunSpec, field_table, find_field
-from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, TEXT, WHOLE
+from ski_addon.spec import SECTIONS, CourseSpec, RunSpec, field_table, find_field, row_kinds
+from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, ROWS, TEXT, WHOLE
 
 SHORTEST = """\
 [slope]
@@ -43,11 +43,13 @@ def message_of(call):
 
 
 def test_every_leaf_is_in_the_table_with_a_doc_a_label_and_bounds_its_default_keeps():
-    leaves = {"name", "description"} | {f"{s}.{f.name}" for s, c in SECTIONS.items() for f in dataclasses.fields(c)}
+    leaves = {"name", "description", *row_kinds()} | {
+        f"{s}.{f.name}" for s, c in SECTIONS.items() for f in dataclasses.fields(c)
+    }
     assert set(field_table()) == leaves
-    for info in field_table().values():
+    for info in (*field_table().values(), *(leaf for rows in row_kinds().values() for leaf in rows.row_fields)):
         assert info.doc and info.label, info.key
-        assert info.kind in (NUMBER, WHOLE, FLAG, CHOICE, TEXT)
+        assert info.kind in (NUMBER, WHOLE, FLAG, CHOICE, TEXT, ROWS)
         if info.kind in (NUMBER, WHOLE) and info.default != info.word:
             assert info.low <= info.default <= info.high, info.key
         if info.kind == CHOICE:
@@ -56,7 +58,7 @@ def test_every_leaf_is_in_the_table_with_a_doc_a_label_and_bounds_its_default_ke
 
 def test_sections_of_the_spec_are_those_of_the_table():
     nested = [f.name for f in dataclasses.fields(RunSpec) if f.name not in ("name", "description")]
-    assert nested == list(SECTIONS)
+    assert nested == [*SECTIONS, *row_kinds()]
     assert all(isinstance(getattr(RunSpec(), section), cls) for section, cls in SECTIONS.items())
 
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import bpy
 
-from ..spec import SECTIONS, RunSpec, field_table, list_presets, section_fields
+from ..spec import SECTIONS, RunSpec, field_table, list_presets, row_kinds, section_fields
+from ..spec.document import parse_document, write_document
 from ..spec.table import get_value
 from .fields import make_properties, read_field, write_field
 
@@ -32,15 +33,22 @@ def read_spec(settings: Any) -> RunSpec:
     for section in SECTIONS:
         group = getattr(settings, section)
         content[section] = {info.name: read_field(group, info) for info in section_fields(section)}
-    return RunSpec.from_dict(content)
+    rows = parse_document(settings.rows, "the rows of this scene").content
+    return RunSpec.from_dict({**content, **rows})
 
 
 def write_spec(settings: Any, spec: RunSpec) -> None:
     """Set `scene.ski` to ask for the run `spec`."""
     settings.run_name, settings.run_description = spec.name, spec.description
+    settings.rows = _rows_text(spec)
     for info in field_table().values():
         if info.section:
             write_field(getattr(settings, info.section), info, get_value(spec, info.key))
+
+
+def _rows_text(spec: RunSpec) -> str:
+    """Return the rows of a run (gates, points, pushes) as TOML; the sidebar carries them along as they are."""
+    return write_document({key: rows for key, rows in spec.to_dict().items() if key in row_kinds()})
 
 
 def _apply_preset(settings: Any, _context: Any) -> None:
@@ -73,6 +81,7 @@ def _settings_group(groups: dict[str, type], spec: RunSpec) -> type:
         ),
         "run_name": bpy.props.StringProperty(name="Name", default=spec.name, maxlen=120),
         "run_description": bpy.props.StringProperty(name="Description", default=spec.description, maxlen=2000),
+        "rows": bpy.props.StringProperty(name="Rows", default=_rows_text(spec), options={"HIDDEN"}),
         "armature": bpy.props.PointerProperty(
             name="Skier", description="The skier that was baked last; baking again replaces its keys",
             type=bpy.types.Object, poll=_is_armature,

@@ -101,14 +101,16 @@ class Dynamics:
         """World position (3,) [m] of a MuJoCo body's frame."""
         return self._xpos[body]
 
-    def accelerations(self, torque: np.ndarray, snow: np.ndarray) -> np.ndarray:
+    def accelerations(self, torque: np.ndarray, snow: np.ndarray, push: np.ndarray | None = None) -> np.ndarray:
         """Return q'' (nv,) under hinge torques (31,) [N m] and snow's generalised force `snow` (37,): forward dynamics
-        of the whole model, poles included.
+        of the whole model, poles included. `push` (nv,) is a generalised force the controller knows nothing of.
         """
         model = self.model
         force = self.applied + self._qfrc_passive - self._qfrc_bias
         force[model.actuated_dof] += torque
         force[model.body_dof] += snow
+        if push is not None:
+            force += push
         out = np.zeros((1, len(force)))
         self._mj.mj_solveM(model.mujoco, self.data, out, force[None])
         return out[0]

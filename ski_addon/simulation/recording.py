@@ -54,6 +54,7 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "root_residual": (),
     "torque_ratio": (31,),
     "joint_margin": (),
+    "push_force": (3,),
 }
 """Real numbers recorded each step, and their shapes."""
 COUNTS = {
@@ -81,7 +82,8 @@ class Recording:
     (n, 3) [m, world]; `ski_error` (n,) largest error of a ski corner [m], `com_error` (n,) [m]; `turn_phase` (n,),
     `phase` (n,) int8, `turn` (n,) int32, `curvature` (n,) [1/m]; `track_position`, `track_tangent`, `surface_normal`
     (n, 3); `solver_iterations`, `solver_status` (0: converged), `solver_attempts`; `root_residual` [N or N m];
-    `torque_ratio` (n, 31) of the human limit, 0..1; `joint_margin` (n,) least distance of a hinge from its limit [rad].
+    `torque_ratio` (n, 31) of the human limit, 0..1; `joint_margin` (n,) least distance of a hinge from its limit [rad];
+    `push_force` (n, 3) sum of the pushes from outside [N, world].
     """
 
     header: dict[str, Any]
@@ -115,6 +117,7 @@ class Recording:
     root_residual: np.ndarray
     torque_ratio: np.ndarray
     joint_margin: np.ndarray
+    push_force: np.ndarray
 
     def __post_init__(self) -> None:
         for name in array_names():

@@ -18,6 +18,7 @@ from ..snow import Snow
 from ..spec import RunSpec
 from ..terrain import Terrain
 from .falls import Fall, FallWatch
+from .pushes import Pushes
 from .recorder import Recorder
 from .recording import Recording
 from .versions import library_versions
@@ -51,6 +52,7 @@ class Simulation:
         self.fall: Fall | None = None
         self.step_seconds: list[float] = []
         self._watch = FallWatch(self.dynamics, self.reference, terrain)
+        self._pushes = Pushes(spec.push, model, self.time_step)
         self._recorder = Recorder(self.step_total + 256)
         half_length, half_width = 0.5 * model.skeleton.ski_length, 0.5 * model.skeleton.ski_width
         self._corners = np.array(
@@ -93,10 +95,13 @@ class Simulation:
         ski_error = self._ski_error()
         if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
             self.fall = self._watch.check(now, self.arc_length, command, ski_error)
+        value, columns = command.sample[0], self.reference.columns
+        self._pushes.update(self.step_done, dynamics, value[columns["tangent"]], value[columns["normal"]])
         self._record(now, command, ratio, ski_error)
         if self.fall is not None:
             return
-        dynamics.integrate(dynamics.accelerations(command.torque, command.snow), self.time_step)
+        acceleration = dynamics.accelerations(command.torque, command.snow, self._pushes.generalised)
+        dynamics.integrate(acceleration, self.time_step)
         self.progress += command.rate * self.time_step
         self.step_done += 1
         self.finished = self.progress >= self.plan.duration
@@ -169,6 +174,7 @@ class Simulation:
                 command.root_residual,
                 ratio,
                 margin,
+                self._pushes.force,
             ),
             (self._labels[0][place], self._labels[1][place], solution.iterations, solution.status, solution.attempts),
         )

@@ -8,9 +8,10 @@ from __future__ import annotations
 from .estimate import Estimate, estimate
 from .fields import FieldInfo
 from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
+from .rows import GateSpec, PointSpec, PushSpec
 from .run_spec import SCHEMA_VERSION, RunSpec
 from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
-from .table import SECTIONS, field_table, find_field, section_fields
+from .table import SECTIONS, field_table, find_field, row_kinds, section_fields
 
 __all__ = [
     "PART_KINDS",
@@ -21,7 +22,10 @@ __all__ = [
     "CourseSpec",
     "Estimate",
     "FieldInfo",
+    "GateSpec",
+    "PointSpec",
     "Preset",
+    "PushSpec",
     "RunSpec",
     "SimulationSpec",
     "SkierSpec",
@@ -35,5 +39,6 @@ __all__ = [
     "find_ground",
     "list_presets",
     "preset_folder",
+    "row_kinds",
     "section_fields",
 ]

@@ -18,6 +18,8 @@ SIZE_MAX = 1_000_000
 WANTED = "give a run document, for instance one of presets/runs"
 _MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:["']?[\w-]++["']?\.){30}""")
 """A key of more than 30 parts: reading thousands of them would take Python's reader minutes."""
+_HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")
+_WRITTEN = re.compile(r"\s*([\w.-]+)\s*=")
 
 
 @dataclass(frozen=True)
@@ -69,27 +71,55 @@ def parse_document(text: str, source: str) -> SourceDocument:
 
 
 def write_document(content: Mapping[str, Any]) -> str:
-    """Return nested tables (keys, then one level of sections) as TOML text."""
-    lines = [f"{key} = {_toml_value(value)}" for key, value in content.items() if not isinstance(value, Mapping)]
-    for section, values in content.items():
-        if isinstance(values, Mapping):
-            lines += ["", f"[{section}]", *(f"{key} = {_toml_value(value)}" for key, value in values.items())]
+    """Return nested tables (keys, then one level of sections and arrays of tables) as TOML text."""
+    lines = _toml_lines({key: value for key, value in content.items() if not isinstance(value, Mapping | list)})
+    for section, value in content.items():
+        if isinstance(value, Mapping):
+            lines += ["", f"[{section}]", *_toml_lines(value)]
+        elif isinstance(value, list):
+            for row in value:
+                lines += ["", f"[[{section}]]", *_toml_lines(row)]
     return "\n".join(lines) + "\n"
 
 
 def find_line(text: str, key: str) -> int | None:
-    """Return the line number (from 1) on which a dotted key or "[section]" stands in a document, or None."""
+    """Return the line number (from 1) on which a key stands in a document, or None.
+
+    A key is dotted, "[section]", or in a row "gate 3: radius"; of what is not written down, the row or rows are found.
+    """
+    in_row = re.fullmatch(r"(\w+) (\d+)(?:: (.*))?", key, re.DOTALL)
+    if in_row:
+        return _find_row_line(text, in_row[1], int(in_row[2]), in_row[3] or "") or find_line(text, in_row[1])
     section, _, name = key.rpartition(".")
     here = ""
     for count, line in enumerate(text.split("\n"), start=1):
-        header = re.match(r"\s*\[\s*([\w.-]+)\s*\]", line)
-        here = header.group(1) if header else here
-        if header and key == f"[{here}]":
+        header = _HEADER.match(line)
+        here = header[2] if header else here
+        if header and key in (f"[{here}]", here):
             return count
-        written = re.match(r"\s*([\w.-]+)\s*=", line)
+        written = _WRITTEN.match(line)
         if written and written.group(1) in ((name,) if here == section else (key,)):
             return count
     return None
+
+
+def _find_row_line(text: str, rows: str, number: int, name: str) -> int | None:
+    """Return the line of `name`, or else of the header, in the row `[[rows]]` of that number (from 1)."""
+    found, head, inside = 0, None, False
+    for count, line in enumerate(text.split("\n"), start=1):
+        header = _HEADER.match(line)
+        if header:
+            found += header[1] == "[[" and header[2] == rows
+            inside = header[1] == "[[" and header[2] == rows and found == number
+            head = count if inside else head
+        written = _WRITTEN.match(line)
+        if inside and written and written[1] == name:
+            return count
+    return head
+
+
+def _toml_lines(values: Mapping[str, Any]) -> list[str]:
+    return [f"{key} = {_toml_value(value)}" for key, value in values.items()]
 
 
 def _toml_value(value: bool | int | float | str) -> str:

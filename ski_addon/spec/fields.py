@@ -5,20 +5,22 @@ Validation, the key reference in `docs/run_spec.md` and Blender's properties are
 
 from __future__ import annotations
 
+import functools
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
-NUMBER, WHOLE, FLAG, CHOICE, TEXT = "number", "whole", "flag", "choice", "text"
+NUMBER, WHOLE, FLAG, CHOICE, TEXT, ROWS = "number", "whole", "flag", "choice", "text", "rows"
 
 
 @dataclass(frozen=True)
 class FieldInfo:
     """One key of a run document.
 
-    `kind` is "number", "whole", "flag", "choice" or "text"; `low` and `high` bound numbers (for text, `high` is the
-    most characters); `choices` are the words a choice may have; `word` is the one word ("auto", "unlimited") a number
-    may be replaced with, or "". `unit` is SI, except degrees in keys ending in `_deg`.
+    `kind` is "number", "whole", "flag", "choice", "text" or "rows"; `low` and `high` bound numbers (`high` is the most
+    characters of a text and the most rows of rows); `choices` are the words a choice may have; `word` is the one word
+    ("auto", "unlimited") a number may be replaced with, or "". `unit` is SI, except degrees in keys ending in `_deg`.
+    The value of "rows" is a tuple of instances of the frozen dataclass `row`, in a document an array of tables.
     """
 
     key: str
@@ -33,6 +35,12 @@ class FieldInfo:
     word: str = ""
     advanced: bool = False
     required: bool = False
+    row: type | None = None
+
+    @property
+    def row_fields(self) -> tuple[FieldInfo, ...]:
+        """Fields of one row, with keys as "gate.radius"; () for a field that is not rows."""
+        return field_infos(f"{self.key}.", self.row) if self.row else ()
 
     @property
     def section(self) -> str:
@@ -53,8 +61,17 @@ class FieldInfo:
             return ", ".join(self.choices)
         if self.kind == TEXT:
             return f"at most {self.high:g} characters"
+        if self.kind == ROWS:
+            return f"at most {self.high:g} rows"
         span = f"{show_number(self.low)}..{show_number(self.high)}{' ' + self.unit if self.unit else ''}"
         return f"{span} or {self.word}" if self.word else span
+
+
+@functools.cache
+def field_infos(prefix: str, cls: type) -> tuple[FieldInfo, ...]:
+    """Return the fields declared in a dataclass, in order; `prefix` comes before their names in the keys."""
+    leaves = [leaf for leaf in fields(cls) if "kind" in leaf.metadata]
+    return tuple(FieldInfo(key=prefix + leaf.name, default=leaf.default, **leaf.metadata) for leaf in leaves)
 
 
 def show_number(value: float | None) -> str:
@@ -93,3 +110,8 @@ def choice(default: str, choices: tuple[str, ...], label: str, doc: str, **more:
 def text(default: str, most: int, label: str, doc: str, **more: Any) -> Any:
     """Declare free text of at most `most` characters."""
     return _leaf(default, kind=TEXT, high=most, label=label, doc=doc, **more)
+
+
+def rows(row: type, most: int, label: str, doc: str) -> Any:
+    """Declare an array of at most `most` tables, each one a frozen dataclass `row` of fields declared as here."""
+    return _leaf((), kind=ROWS, row=row, high=most, label=label, doc=doc)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from .. import atomic
-from .fields import CHOICE, FLAG, TEXT, FieldInfo, show_number
-from .table import SECTIONS, section_fields
+from .fields import CHOICE, FLAG, ROWS, TEXT, FieldInfo, show_number
+from .table import SECTIONS, row_kinds, section_fields
 
 HEAD = """\
 # The run document
@@ -40,17 +40,31 @@ key, its value and what is allowed:
 run.toml line 11: course.turn_radius = 1.0 is outside 3..200 m: give a number in that range
 ```
 
-On the command line single keys are changed with `--set`, where words need no quotes
-(`--set course.turn_radius=18 --set technique.angulation=auto`), and parts are laid over a run with `--part`.
+Gates, points of a path and pushes are rows: their keys stand under a header in double brackets, which is written again
+for each of them, in order, at the end of the file. Messages count them from 1 (`gate 3: radius = 1 is outside ...`).
 
-This page is made from the table of keys in `ski_addon/spec/sections.py` by `python -m ski_addon.spec.reference`.
+```toml
+[[push]]
+body = "abdomen"
+direction = "left"
+force = 100
+start = 4.5
+```
+
+On the command line single keys are changed with `--set`, where words need no quotes
+(`--set course.turn_radius=18 --set technique.angulation=auto`, and `--set gate.2.radius=12` for the second gate), and
+parts are laid over a run with `--part`. Rows of a part take the place of all the run's rows of that kind.
+
+This page is made from the tables of keys in `ski_addon/spec/sections.py` and `ski_addon/spec/rows.py` by
+`python -m ski_addon.spec.reference`.
 """
 
 
 def key_reference() -> str:
     """Return the reference page of all keys as Markdown."""
     sections = [_table(f"[{name}]", section_fields(name), cls.__doc__ or "") for name, cls in SECTIONS.items()]
-    return "\n".join((HEAD, _table("Document", section_fields("")), *sections))
+    rows = [_table(f"[[{key}]]", info.row_fields, info.row.__doc__ or "") for key, info in row_kinds().items()]
+    return "\n".join((HEAD, _table("Document", section_fields("")), *sections, *rows))
 
 
 def write_reference(path: Path | None = None) -> Path:
@@ -69,6 +83,8 @@ def _table(title: str, infos: tuple[FieldInfo, ...], text: str = "") -> str:
 def _default(info: FieldInfo) -> str:
     if info.required:
         return "*required*"
+    if info.kind == ROWS:
+        return "none"
     if isinstance(info.default, str):
         return f'`"{info.default}"`'
     return f"`{str(info.default).lower()}`" if info.kind == FLAG else f"`{show_number(info.default)}`"
@@ -77,7 +93,7 @@ def _default(info: FieldInfo) -> str:
 def _allowed(info: FieldInfo) -> str:
     if info.kind == CHOICE:
         return ", ".join(f'`"{word}"`' for word in info.choices)
-    if info.kind in (FLAG, TEXT) or not info.word:
+    if info.kind in (FLAG, TEXT, ROWS) or not info.word:
         return info.allowed
     return info.allowed.replace(f"or {info.word}", f'or `"{info.word}"`')
 

@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from . import document, table, values
-from .fields import text
+from . import document, row_values, table, values
+from .fields import ROWS, rows, text
 from .presets import ground_beside
+from .rows import GateSpec, PointSpec, PushSpec
 from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SCHEMA_VERSION = 1
@@ -21,7 +22,7 @@ SCHEMA_VERSION = 1
 
 @dataclass(frozen=True)
 class RunSpec:
-    """One run: skier, slope, course, technique, snow, simulation and bake.
+    """One run: skier, slope, course, technique, snow, simulation and bake, and rows of gates, points and pushes.
 
     The same document serves the sidebar, a preset, the command line and the farm. `from_toml`, `from_dict` and
     `with_overrides` return checked specs; call `validate` on one built from the section classes by hand.
@@ -36,6 +37,9 @@ class RunSpec:
     snow: SnowSpec = field(default_factory=SnowSpec)
     simulation: SimulationSpec = field(default_factory=SimulationSpec)
     bake: BakeSpec = field(default_factory=BakeSpec)
+    gate: tuple[GateSpec, ...] = rows(GateSpec, 500, "Gates", "Gates of a gate course, in the order they are passed")
+    point: tuple[PointSpec, ...] = rows(PointSpec, 5000, "Points", "Corners of a drawn path, in the order they are met")
+    push: tuple[PushSpec, ...] = rows(PushSpec, 100, "Pushes", "Forces from outside that the skier does not know of")
 
     @classmethod
     def from_toml(cls, path: str | Path) -> RunSpec:
@@ -60,23 +64,38 @@ class RunSpec:
         return cls()._merged(content)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the spec as nested plain tables in canonical order, numbers as float or int by their field."""
+        """Return the spec as nested plain tables in canonical order, numbers as float or int by their field.
+
+        Rows are lists of tables; where there are none, their key is left out.
+        """
         flat = {key: values.canonical(info, table.get_value(self, key)) for key, info in table.field_table().items()}
+        for key in table.row_kinds():
+            flat[key] = row_values.plain_rows(flat[key])
+            if not flat[key]:
+                del flat[key]
         return table.nested(flat)
 
     def to_toml(self) -> str:
-        """Return the canonical TOML document: every key, in the order of the reference."""
+        """Return the canonical TOML document: every key, in the order of the reference, then the rows."""
         return document.write_document(self.to_dict())
 
     def with_overrides(self, overrides: Mapping[str, Any]) -> RunSpec:
         """Return a copy with dotted keys replaced, as `--set course.turn_radius=10` does.
 
-        Strings are read as TOML values; words need no quotes. Other values are taken as they are. A relative
+        Strings are read as TOML values; words need no quotes. Other values are taken as they are. `gate.2.radius` is
+        the radius of the second gate, which must be there; `gate` stands for all gates. A relative
         `slope.grid_file` is one in the present folder.
         """
-        flat = {key: values.parse_text(table.find_field(key), value) for key, value in overrides.items()}
+        places = {key: row_values.find_place(key) for key in overrides}
+        flat = {
+            key: values.parse_text(table.find_field(key), value)
+            for key, value in overrides.items()
+            if places[key] is None
+        }
         changed = self._merged(table.nested(flat))
-        return changed._with_ground_beside(Path()) if "slope.grid_file" in flat else changed
+        changed = changed._with_ground_beside(Path()) if "slope.grid_file" in flat else changed
+        inner = {place: values.parse_text(place.field, overrides[key]) for key, place in places.items() if place}
+        return changed._merged(row_values.with_places(changed, inner)) if inner else changed
 
     def with_part(self, path: str | Path) -> RunSpec:
         """Return a copy with the sections of a part document (a skier, a snow, a style) laid over this one.
@@ -110,7 +129,8 @@ class RunSpec:
         flat = table.flattened(content)
         changed = self
         for key, value in flat.items():
-            changed = _replaced(changed, key, value)
+            info = table.find_field(key)
+            changed = _replaced(changed, key, row_values.read_rows(info, value) if info.kind == ROWS else value)
         changed.validate()
         for key in flat:
             changed = _replaced(changed, key, values.canonical(table.find_field(key), table.get_value(changed, key)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import difflib
 import functools
 from collections.abc import Mapping
@@ -10,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..errors import SpecError
-from .fields import FieldInfo
+from .fields import ROWS, FieldInfo, field_infos
 from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SECTIONS: Mapping[str, type] = MappingProxyType(
@@ -29,18 +28,28 @@ SECTIONS: Mapping[str, type] = MappingProxyType(
 
 @functools.cache
 def field_table() -> Mapping[str, FieldInfo]:
-    """Return every key of a run document, in document order, with its `FieldInfo`."""
+    """Return every key of a run document, in document order, with its `FieldInfo`; the keys of rows come last."""
     from .run_spec import RunSpec  # the table describes RunSpec and RunSpec uses the table
 
-    infos = _infos("", RunSpec)
+    own = field_infos("", RunSpec)
+    infos = [info for info in own if info.kind != ROWS]
     for section, cls in SECTIONS.items():
-        infos += _infos(f"{section}.", cls)
+        infos += field_infos(f"{section}.", cls)
+    infos += [info for info in own if info.kind == ROWS]
     return MappingProxyType({info.key: info for info in infos})
 
 
 def section_fields(section: str) -> tuple[FieldInfo, ...]:
-    """Return the fields of one section ("" for the keys of the document itself)."""
+    """Return the fields of one section ("" for the keys of the document itself), or of one row ("gate")."""
+    if section in row_kinds():
+        return row_kinds()[section].row_fields
     return tuple(info for info in field_table().values() if info.section == section)
+
+
+@functools.cache
+def row_kinds() -> Mapping[str, FieldInfo]:
+    """Return the keys whose values are rows ("gate"), with their `FieldInfo`."""
+    return MappingProxyType({key: info for key, info in field_table().items() if info.kind == ROWS})
 
 
 def find_field(key: str) -> FieldInfo:
@@ -76,8 +85,9 @@ def flattened(content: Mapping[str, Any]) -> dict[str, Any]:
                 raise SpecError(key, value, problem="is not a table", hint=f"write its keys under [{key}]")
             flat |= {f"{key}.{name}": inner for name, inner in value.items()}
         elif isinstance(value, Mapping) and key not in field_table():
-            nearest = difflib.get_close_matches(key[:100], SECTIONS, n=1, cutoff=0.0)[0]
-            raise SpecError(f"[{key}]", problem="is not a section of a run", hint=f"did you mean [{nearest}]?")
+            nearest = difflib.get_close_matches(key[:100], (*SECTIONS, *row_kinds()), n=1, cutoff=0.0)[0]
+            shown = f"[[{nearest}]]" if nearest in row_kinds() else f"[{nearest}]"
+            raise SpecError(f"[{key}]", problem="is not a section of a run", hint=f"did you mean {shown}?")
         else:
             flat[key] = value
     for key in flat:
@@ -106,8 +116,3 @@ def check_required(content: Mapping[str, Any]) -> None:
         if info.required and key not in flat:
             hint = f"write {info.name} under [{info.section}]: {info.doc[0].lower()}{info.doc[1:]} ({info.allowed})"
             raise SpecError(key, problem="is missing", hint=hint)
-
-
-def _infos(prefix: str, cls: type) -> list[FieldInfo]:
-    leaves = [leaf for leaf in dataclasses.fields(cls) if "kind" in leaf.metadata]
-    return [FieldInfo(key=prefix + leaf.name, default=leaf.default, **leaf.metadata) for leaf in leaves]

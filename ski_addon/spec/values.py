@@ -8,7 +8,8 @@ import unicodedata
 from typing import TYPE_CHECKING, Any
 
 from ..errors import SpecError
-from .fields import CHOICE, FLAG, NUMBER, TEXT, WHOLE, FieldInfo
+from . import row_values
+from .fields import CHOICE, FLAG, NUMBER, ROWS, TEXT, WHOLE, FieldInfo
 
 if TYPE_CHECKING:
     from .run_spec import RunSpec
@@ -24,12 +25,16 @@ def check(info: FieldInfo, value: object, spec: RunSpec | None = None) -> None:
             raise SpecError(info.key, value, info.allowed, "choose one of these", problem="is not one of")
     elif info.kind == TEXT:
         _check_text(info, value)
+    elif info.kind == ROWS:
+        row_values.check_rows(info, value, check)
     elif not (info.word and isinstance(value, str) and value == info.word):
         _check_number(info, value, spec)
 
 
 def canonical(info: FieldInfo, value: Any) -> Any:
     """Return a checked value in the type of its field (2 -> 2.0 for a number, 6.0 -> 6 for a whole one)."""
+    if info.kind == ROWS:
+        return row_values.map_rows(info, value, canonical)
     if info.kind == NUMBER and not isinstance(value, str):
         return float(value) + 0.0  # no negative zero
     return int(value) if info.kind == WHOLE else value

@@ -21,6 +21,34 @@ def test_every_preset_goes_in_and_comes_out_the_same(core, scene, properties) ->
         assert properties.read_spec(scene.ski).content_hash() == spec.content_hash()
 
 
+def test_rows_of_a_run_go_in_and_come_out_the_same(core, scene, properties, tmp_path) -> None:
+    import bpy
+
+    gates = [{"x": 12.3456789, "y": -3}, {"x": 25, "y": 4, "radius": 12.1, "side": "left"}]
+    push = {"body": "ski.R", "direction": "up", "force": 100, "start": 2}
+    points = [{"x": i / 7, "y": i / 3} for i in range(3000)]
+    spec = core("spec").RunSpec.from_dict({"name": "Gates", "gate": gates, "point": points, "push": [push]})
+    properties.write_spec(scene.ski, spec)
+    assert properties.read_spec(scene.ski).content_hash() == spec.content_hash()
+    path = tmp_path / "gates.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    assert properties.read_spec(bpy.context.scene.ski).to_toml() == spec.to_toml()
+
+
+def test_rows_go_when_a_preset_without_rows_is_chosen(core, scene, properties) -> None:
+    properties.write_spec(scene.ski, core("spec").RunSpec.from_dict({"gate": [{"x": 1, "y": 2}]}))
+    scene.ski.preset = "paper_main"
+    assert properties.read_spec(scene.ski) == properties.preset_specs()["paper_main"]
+
+
+def test_rows_damaged_by_hand_are_refused(core, scene, properties) -> None:
+    for text, words in (("[[gate]", "the rows of this scene is not valid TOML"), ("[[gate]]\nx = 1", "gate 1: y is")):
+        scene.ski.rows = text
+        with pytest.raises(core("errors").SpecError, match=words):
+            properties.read_spec(scene.ski)
+
+
 def test_a_new_scene_asks_for_the_shown_preset(core, scene, properties) -> None:
     assert properties.read_spec(scene.ski) == properties.preset_specs()[scene.ski.preset]
 

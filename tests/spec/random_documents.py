@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import random
 import string
 from typing import Any
 
-from ski_addon.spec import FieldInfo, field_table
-from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, TEXT, WHOLE
+from ski_addon.spec import FieldInfo, RunSpec, field_table
+from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, ROWS, TEXT, WHOLE
+from ski_addon.spec.table import get_value
 
-KEYS = tuple(field_table())
+ROW_KEYS = tuple(key for key, info in field_table().items() if info.kind == ROWS)
+KEYS = tuple(key for key in field_table() if key not in ROW_KEYS)
+"""Keys of one value each."""
 NUMBERS = tuple(key for key, info in field_table().items() if info.kind in (NUMBER, WHOLE))
 LETTERS = string.printable[:95] + "\n\tÄéßñ雪⛷\u00a0\u2028\\\"'"
 """Letters that a text may have, those among them that TOML and JSON must escape."""
@@ -24,6 +28,8 @@ def random_value(info: FieldInfo, rng: random.Random) -> Any:
     if info.kind == TEXT:
         written = "".join(rng.choices(LETTERS, k=rng.choice((0, 1, 20, int(info.high)))))
         return f"/{written}"[: int(info.high)] if info.key.endswith("_file") else written  # a whole path stays as it is
+    if info.kind == ROWS:
+        return [random_row(info, rng) for _ in range(rng.choice((1, 2, 5)))]
     if info.word and rng.random() < 0.2:
         return info.word
     if info.kind == WHOLE:
@@ -31,6 +37,17 @@ def random_value(info: FieldInfo, rng: random.Random) -> Any:
     drawn = rng.choice((info.low, info.high, rng.uniform(info.low, info.high), rng.uniform(info.low, info.high)))
     rounded = round(drawn)
     return rounded if info.low <= rounded <= info.high and rng.random() < 0.2 else drawn
+
+
+def random_row(info: FieldInfo, rng: random.Random) -> dict[str, Any]:
+    """A row with all its keys."""
+    return {field.name: random_value(field, rng) for field in info.row_fields}
+
+
+def held(spec: RunSpec, key: str) -> Any:
+    """The value of a key as a document has it: rows as tables."""
+    value = get_value(spec, key)
+    return [dataclasses.asdict(row) for row in value] if key in ROW_KEYS else value
 
 
 def random_flat(rng: random.Random, share: float = 1.0) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import pytest
 from ski_addon.spec import RunSpec, field_table
 from ski_addon.spec.fields import NUMBER, TEXT
 from ski_addon.spec.table import get_value
-from tests.spec.random_documents import KEYS, nested, random_flat
+from tests.spec.random_documents import KEYS, ROW_KEYS, held, nested, random_flat
 
 SEEDS = range(150)
 
@@ -30,7 +30,7 @@ def specs(documents):
 def test_every_value_arrives_under_its_key(documents, specs):
     for flat, spec in zip(documents, specs, strict=True):
         for key, value in flat.items():
-            assert get_value(spec, key) == value, key
+            assert held(spec, key) == value, key
 
 
 def test_written_text_reads_back_equal_and_is_written_the_same_again(specs):
@@ -51,7 +51,7 @@ def test_file_reads_back_the_same_bytes(specs, tmp_path):
 
 def test_text_is_toml_with_the_same_values_for_any_reader(documents, specs):
     for flat, spec in zip(documents, specs, strict=True):
-        assert tomllib.loads(spec.to_toml()) == nested({key: flat[key] for key in KEYS})
+        assert tomllib.loads(spec.to_toml()) == nested({key: flat[key] for key in (*KEYS, *ROW_KEYS)})
 
 
 def test_order_of_keys_does_not_matter(documents, specs):
@@ -72,9 +72,11 @@ def test_overrides_of_every_key_are_the_document_itself(documents, specs):
 def test_written_override_is_the_value_itself(specs):
     """What `to_toml` writes for a value may be given after `--set key=`."""
     for spec in specs[:60]:
-        lines = [line for line in spec.to_toml().split("\n") if " = " in line]
+        rows = {key: getattr(spec, key) for key in ROW_KEYS}
+        bare = dataclasses.replace(spec, **dict.fromkeys(ROW_KEYS, ()))
+        lines = [line for line in bare.to_toml().split("\n") if " = " in line]
         written = dict(zip(KEYS, (line.partition(" = ")[2] for line in lines), strict=True))
-        assert RunSpec().with_overrides(written) == spec
+        assert RunSpec(**rows).with_overrides(written) == spec
 
 
 def test_partial_documents_take_defaults_for_the_rest():
@@ -82,8 +84,8 @@ def test_partial_documents_take_defaults_for_the_rest():
     for seed in SEEDS:
         flat = random_flat(random.Random(seed), share=0.2)
         spec = RunSpec.from_dict(nested(flat))
-        for key in KEYS:
-            assert get_value(spec, key) == flat.get(key, get_value(default, key)), key
+        for key in (*KEYS, *ROW_KEYS):
+            assert held(spec, key) == flat.get(key, held(default, key)), key
 
 
 def test_two_overrides_after_each_other_are_one():
@@ -97,7 +99,7 @@ def test_two_overrides_after_each_other_are_one():
 
 def test_hash_tells_apart_every_change_of_one_key(documents):
     base = RunSpec()
-    for key in KEYS:
+    for key in (*KEYS, *ROW_KEYS):
         values = {str(flat[key]): flat[key] for flat in documents}
         specs = {RunSpec.from_dict(nested({key: value})) for value in values.values()} | {base}
         assert len({spec.content_hash() for spec in specs}) == len(specs), key

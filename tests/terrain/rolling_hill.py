@@ -49,7 +49,9 @@ def packed(heights: np.ndarray) -> bytes:
         for name, array in arrays.items():
             part = io.BytesIO()
             np.lib.format.write_array(part, array, version=(1, 0))
-            archive.writestr(zipfile.ZipInfo(f"{name}.npy", (2019, 1, 1, 0, 0, 0)), part.getvalue(), zipfile.ZIP_DEFLATED)
+            archive.writestr(
+                zipfile.ZipInfo(f"{name}.npy", (2019, 1, 1, 0, 0, 0)), part.getvalue(), zipfile.ZIP_DEFLATED
+            )
     return made.getvalue()
 
 

@@ -1,0 +1,69 @@
+"""The rows of a run document as frozen dataclasses: `[[gate]]`, `[[point]]`, `[[push]]`, each any number of times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from .fields import choice, number
+
+BODIES = (
+    *("pelvis", "abdomen", "chest", "head"),
+    *(f"{part}.{side}" for side in "LR" for part in ("upper_arm", "forearm", "hand")),
+    *(f"{part}.{side}" for side in "LR" for part in ("thigh", "shank", "foot", "ski")),
+)
+"""Bodies of the skier that can be pushed: all but the poles."""
+DIRECTIONS = ("left", "right", "forward", "back", "up", "down")
+"""Directions of a push in the frame of the track: tangent, left within the surface, surface normal."""
+
+
+@dataclass(frozen=True)
+class GateSpec:
+    """A gate the skier passes, measured from the start of the track; write `[[gate]]` above each."""
+
+    x: float = number(
+        0.0, -50, 5000, "m", "Down", "Distance down the slope's surface along the fall line", required=True
+    )
+    y: float = number(0.0, -1000, 1000, "m", "Left", "Distance to the left across the slope", required=True)
+    side: str = choice(
+        "auto",
+        ("left", "right", "auto"),
+        "Turn",
+        "Direction of the turn around the gate's pole: a left gate is passed turning left, its pole stands to the left "
+        "of the skis; auto = alternating from course.first_turn",
+    )
+    radius: float | Literal["auto"] = number(
+        "auto", 3, 200, "m", "Radius", "Radius of the turn around the pole; auto = chosen by the planner", word="auto"
+    )
+    distance: float | Literal["auto"] = number(
+        "auto",
+        0.2,
+        5,
+        "m",
+        "Clearance",
+        "Distance from the pole to the middle between the skis at the turn's apex; auto = chosen by the planner",
+        word="auto",
+    )
+
+
+@dataclass(frozen=True)
+class PointSpec:
+    """A corner of a drawn path, measured from the start of the track; write `[[point]]` above each."""
+
+    x: float = number(
+        0.0, -50, 5000, "m", "Down", "Distance down the slope's surface along the fall line", required=True
+    )
+    y: float = number(0.0, -1000, 1000, "m", "Left", "Distance to the left across the slope", required=True)
+
+
+@dataclass(frozen=True)
+class PushSpec:
+    """A constant force on one body for a while, unknown to the skier; write `[[push]]` above each."""
+
+    body: str = choice("abdomen", BODIES, "Body", "Body whose centre of mass is pushed", required=True)
+    direction: str = choice(
+        "left", DIRECTIONS, "Direction", "Where to, in the track's frame when the push starts", required=True
+    )
+    force: float = number(100.0, 0, 2000, "N", "Force", "Size of the force", required=True)
+    start: float = number(1.0, 0, 3600, "s", "Start", "Time from the start of the run", required=True)
+    duration: float = number(0.5, 0.01, 10, "s", "Duration", "How long the force acts")
