@@ -50,11 +50,37 @@ class SkierSpec:
 
 @dataclass(frozen=True)
 class SlopeSpec:
-    """The ground."""
+    """The ground: a plane, bumps across the fall line, a field of moguls, or a grid of heights."""
 
-    kind: str = choice("plane", ("plane",), "Slope", "Shape of the ground")
+    kind: str = choice(
+        "plane", ("plane", "bumps", "moguls"), "Slope", "Shape of the ground; keys of other shapes do nothing"
+    )
     angle_deg: float = number(
         10.0, 0, 45, "deg", "Slope angle", "Steepness of the slope, downhill along +x", required=True
+    )
+    bump_count: int = whole(10, 1, 500, "bumps", "Bumps", "Number of crests, with troughs between them")
+    bump_height: float = number(
+        0.3, 0.02, 3, "m", "Bump height", "Height of an arc over its chord; from trough to crest it is twice that"
+    )
+    bump_width: float = number(8.0, 1, 50, "m", "Bump width", "Chord of an arc; from crest to crest it is twice that")
+    bump_start: float = number(
+        10.0, 0, 1000, "m", "Bump start", "Distance down the slope to where bumps or moguls begin"
+    )
+    bump_fillet: float = number(
+        0.25, 0.05, 1, "", "Bump fillet", "Share of the width over which a crest blends into a trough", advanced=True
+    )
+    mogul_count: int = whole(8, 1, 500, "moguls", "Moguls", "Number of moguls down a column")
+    mogul_height: float = number(0.5, 0.02, 2, "m", "Mogul height", "Height from trough to crest")
+    mogul_spacing: float = number(3.5, 1, 30, "m", "Mogul spacing", "Distance from crest to crest down a column")
+    mogul_across: float | Literal["auto"] = number(
+        "auto",
+        1,
+        30,
+        "m",
+        "Mogul columns",
+        "Distance between neighbouring columns, which are offset by half a spacing; auto = the spacing",
+        word="auto",
+        advanced=True,
     )
 
 

@@ -1,15 +1,25 @@
-"""The ground: height and normal at any horizontal position, batched."""
+"""The ground: height, slope and normal at any horizontal position, batched."""
 
 from __future__ import annotations
 
-from ..spec import SlopeSpec
-from .plane import PlaneTerrain, Terrain
+from .build import build_terrain, mogul_crests, mogul_troughs
+from .bumps import BumpTrain, bump_angle, bump_radius
+from .moguls import MogulField
+from .plane import PlaneTerrain
+from .reach import check_bumps
+from .relief import ReliefTerrain
+from .terrain import Terrain
 
-__all__ = ["PlaneTerrain", "Terrain", "build_terrain"]
-
-
-def build_terrain(slope: SlopeSpec) -> Terrain:
-    """Return the terrain that `slope` asks for."""
-    import math
-
-    return PlaneTerrain(math.radians(slope.angle_deg))
+__all__ = [
+    "BumpTrain",
+    "MogulField",
+    "PlaneTerrain",
+    "ReliefTerrain",
+    "Terrain",
+    "build_terrain",
+    "bump_angle",
+    "bump_radius",
+    "check_bumps",
+    "mogul_crests",
+    "mogul_troughs",
+]

@@ -1,26 +1,12 @@
-"""The inclined plane, and what every terrain offers."""
+"""The inclined plane."""
 
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 
-
-class Terrain(Protocol):
-    """A snow surface over the horizontal plane; x points down the fall line, y to the left [m, world]."""
-
-    mean_angle: float
-    """Steepness [rad] of the plane in whose coordinates courses are drawn."""
-
-    def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
-        """Return the surface's z [m] at `x`, `y` (broadcast together)."""
-        ...
-
-    def normal(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
-        """Return upward unit normals (..., 3) at `x`, `y`."""
-        ...
+from .terrain import EVERYWHERE, Extent, Number, is_number, paired, within
 
 
 class PlaneTerrain:
@@ -30,13 +16,31 @@ class PlaneTerrain:
         """Take the slope's angle [rad], 0 for flat ground."""
         self.angle = angle
         self.mean_angle = angle
+        self.extent: Extent = EVERYWHERE
+        self._gradient = (-math.tan(angle), 0.0)
+        self._normal = (math.sin(angle), 0.0, math.cos(angle))
 
-    def height(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
+    def contains(self, x: Number, y: Number) -> np.ndarray:
+        """Return true for every place; see `Terrain`."""
+        return within(self.extent, x, y)
+
+    def height(self, x: Number, y: Number) -> np.ndarray:
         """Return z [m] at `x`, `y`; see `Terrain`."""
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        return -x * math.tan(self.angle)
+        if is_number(x) and is_number(y):
+            return np.asarray(x * self._gradient[0])[()]
+        return paired(x, y)[0] * self._gradient[0]
 
-    def normal(self, x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
+    def gradient(self, x: Number, y: Number) -> np.ndarray:
+        """Return (dz/dx, dz/dy) (..., 2); see `Terrain`."""
+        return self._everywhere(self._gradient, x, y)
+
+    def normal(self, x: Number, y: Number) -> np.ndarray:
         """Return unit normals (..., 3); see `Terrain`."""
-        shape = np.broadcast_shapes(np.shape(x), np.shape(y))
-        return np.broadcast_to([math.sin(self.angle), 0.0, math.cos(self.angle)], (*shape, 3)).copy()
+        return self._everywhere(self._normal, x, y)
+
+    @staticmethod
+    def _everywhere(vector: tuple[float, ...], x: Number, y: Number) -> np.ndarray:
+        """Return `vector` (k,) at every place, as an array (..., k) that may be changed."""
+        if is_number(x) and is_number(y):
+            return np.array(vector)
+        return np.broadcast_to(vector, (*np.broadcast_shapes(np.shape(x), np.shape(y)), len(vector))).copy()
