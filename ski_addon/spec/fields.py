@@ -20,6 +20,7 @@ class FieldInfo:
     `kind` is "number", "whole", "flag", "choice", "text" or "rows"; `low` and `high` bound numbers (`high` is the most
     characters of a text and the most rows of rows); `choices` are the words a choice may have; `word` is the one word
     ("auto", "unlimited") a number may be replaced with, or "". `unit` is SI, except degrees in keys ending in `_deg`.
+    A key with `kinds` matters (and may be required) only where its section's `kind` is one of them.
     The value of "rows" is a tuple of instances of the frozen dataclass `row`, in a document an array of tables.
     """
 
@@ -35,6 +36,7 @@ class FieldInfo:
     word: str = ""
     advanced: bool = False
     required: bool = False
+    kinds: tuple[str, ...] = ()
     row: type | None = None
 
     @property

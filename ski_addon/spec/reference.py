@@ -31,7 +31,8 @@ transition_duration = 1.5
 turn_radius = 15
 ```
 
-Keys marked *required* must be in a file; all others have the default shown. Units are SI; angles are in degrees only in
+Keys marked *required* must be in a file; all others have the default shown. A meaning that begins with a word such as
+`gates` is that of a key for that `kind` of its section only; it does nothing, and is not required, for the others. Units are SI; angles are in degrees only in
 keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an
 unknown key, a wrong type or a value outside its range is refused with one line that names the file, the line in it, the
 key, its value and what is allowed:
@@ -99,7 +100,8 @@ def _allowed(info: FieldInfo) -> str:
 
 
 def _meaning(info: FieldInfo) -> str:
-    return f"{info.doc} (advanced)" if info.advanced else info.doc
+    doc = f"{info.doc} (advanced)" if info.advanced else info.doc
+    return f"{', '.join(f'`{kind}`' for kind in info.kinds)}: {doc}" if info.kinds else doc
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@ from typing import Literal
 
 from .fields import choice, flag, number, text, whole
 
+_TURNS, _GATES, _BUMPS = ("turns",), ("gates",), ("bumps",)
+
 
 @dataclass(frozen=True)
 class SkierSpec:
@@ -129,27 +131,148 @@ class SlopeSpec:
 
 @dataclass(frozen=True)
 class CourseSpec:
-    """Where the skis go: linked turns of constant radius joined by transitions."""
+    """Where the skis go: linked turns, gates, a drawn path, or straight and turning lines over bumps and moguls."""
 
-    kind: str = choice("turns", ("turns",), "Course", "How the track is described", required=True)
-    turn_count: int = whole(6, 1, 500, "turns", "Turns", "Number of turns", required=True)
+    kind: str = choice(
+        "turns",
+        ("turns", "gates", "path", "bumps"),
+        "Course",
+        "How the track is described: turns of one radius, gates to pass, a path of points, a line over bumps",
+        required=True,
+    )
+    turn_count: int = whole(6, 1, 500, "turns", "Turns", "Number of turns", required=True, kinds=_TURNS)
     turn_duration: float = number(
-        1.0, 0.1, 30, "s", "Turn duration", "Time spent at full curvature in each turn", required=True
+        1.0, 0.1, 30, "s", "Turn duration", "Time spent at full curvature in each turn", required=True, kinds=_TURNS
     )
     transition_duration: float = number(
-        1.5, 0.2, 30, "s", "Transition duration", "Time to change from one turn to the next", required=True
+        1.5,
+        0.2,
+        30,
+        "s",
+        "Transition duration",
+        "Time to change from one turn to the next",
+        required=True,
+        kinds=_TURNS,
     )
-    turn_radius: float = number(15.0, 3, 200, "m", "Turn radius", "Radius of each turn", required=True)
+    turn_radius: float = number(
+        15.0, 3, 200, "m", "Turn radius", "Radius of each turn", required=True, kinds=_TURNS
+    )
     start_speed: float = number(5.0, 0.3, 40, "m/s", "Start speed", "Speed at the start of the track")
-    first_turn: str = choice("right", ("right", "left"), "First turn", "Side of the first turn")
+    first_turn: str = choice(
+        "right", ("right", "left"), "First turn", "Side of the first turn", kinds=("turns", "gates", "bumps")
+    )
     half_first_turn: bool = flag(
-        False, "Half first turn", "Make the first turn half as long, so that the track runs straight down the slope"
+        False,
+        "Half first turn",
+        "Make the first turn half as long, so that the track runs straight down the slope",
+        kinds=_TURNS,
     )
     entry: str = choice(
         "straight",
         ("straight", "turn"),
         "Entry",
         "straight = half a transition leads in and out; turn = the run starts already in its first turn",
+        kinds=_TURNS,
+    )
+    gate_setting: str = choice(
+        "slalom",
+        ("slalom", "giant_slalom", "list"),
+        "Gates",
+        "slalom, giant_slalom = gates are set by the keys below; list = the document's [[gate]] rows",
+        kinds=_GATES,
+    )
+    gate_count: int = whole(20, 1, 200, "gates", "Gate count", "Number of gates that are set", kinds=_GATES)
+    gate_spacing: float | Literal["auto"] = number(
+        "auto",
+        3,
+        60,
+        "m",
+        "Gate spacing",
+        "Distance down the slope from gate to gate; auto = 10 m in slalom, 24 m in giant slalom",
+        word="auto",
+        kinds=_GATES,
+    )
+    gate_offset: float | Literal["auto"] = number(
+        "auto",
+        0,
+        30,
+        "m",
+        "Gate offset",
+        "Distance sideways from gate to gate; auto = 2 m in slalom, 4.5 m in giant slalom",
+        word="auto",
+        kinds=_GATES,
+    )
+    gate_radius: float | Literal["auto"] = number(
+        "auto",
+        3,
+        200,
+        "m",
+        "Gate radius",
+        "Tightest radius of the turn round each gate; auto = the smoothest line",
+        word="auto",
+        kinds=_GATES,
+    )
+    gate_distance: float | Literal["auto"] = number(
+        "auto",
+        0.2,
+        5,
+        "m",
+        "Gate clearance",
+        "Distance from each pole to the middle between the skis; auto = 0.5 m in slalom, 1 m in giant slalom",
+        word="auto",
+        kinds=_GATES,
+    )
+    gate_variation: float = number(
+        0.0, 0, 1, "", "Gate variation", "How unevenly gates are set, by simulation.seed; 0 = evenly", kinds=_GATES
+    )
+    run_in: float | Literal["auto"] = number(
+        "auto",
+        3,
+        200,
+        "m",
+        "Run-in",
+        "Distance from the start to the first gate or turn; auto = a little more than from gate to gate",
+        word="auto",
+        kinds=("gates", "bumps"),
+    )
+    path_smoothing: float | Literal["auto"] = number(
+        "auto",
+        0.2,
+        50,
+        "m",
+        "Path smoothing",
+        "Bends of the drawn path shorter than this are smoothed away; auto = only where the path is too tight to ski",
+        word="auto",
+        kinds=("path",),
+    )
+    run_length: float | Literal["auto"] = number(
+        "auto",
+        5,
+        2000,
+        "m",
+        "Run length",
+        "Length of the run down the slope; auto = past the last bump",
+        word="auto",
+        kinds=_BUMPS,
+    )
+    turn_amplitude: float = number(
+        0.0,
+        0,
+        10,
+        "m",
+        "Turn amplitude",
+        "How far beside the bumps' crests the line turns round them; 0 = straight over",
+        kinds=_BUMPS,
+    )
+    turn_spacing: float | Literal["auto"] = number(
+        "auto",
+        1,
+        60,
+        "m",
+        "Turn spacing",
+        "Distance down the slope from turn to turn; auto = from crest to crest",
+        word="auto",
+        kinds=_BUMPS,
     )
 
 

@@ -110,9 +110,18 @@ def get_value(spec: object, key: str) -> Any:
 
 
 def check_required(content: Mapping[str, Any]) -> None:
-    """Raise `SpecError` for the first required key a run document does not have."""
+    """Raise `SpecError` for the first required key a run document does not have.
+
+    A key for some kinds of course or ground only is not missed in a document of another kind.
+    """
     flat = flattened(content)
     for key, info in field_table().items():
-        if info.required and key not in flat:
+        if info.required and key not in flat and _is_for(info, flat):
             hint = f"write {info.name} under [{info.section}]: {info.doc[0].lower()}{info.doc[1:]} ({info.allowed})"
             raise SpecError(key, problem="is missing", hint=hint)
+
+
+def _is_for(info: FieldInfo, flat: Mapping[str, Any]) -> bool:
+    """Return whether a key matters in a document with these dotted keys."""
+    kind = f"{info.section}.kind"
+    return not info.kinds or flat.get(kind, field_table()[kind].default) in info.kinds
