@@ -58,7 +58,8 @@ def progress_rate(reference: Reference, sample: np.ndarray, dynamics: Dynamics) 
     behind = float(along @ (dynamics.com - sample[0, columns["com"]]))
     speed = float(along @ dynamics.com_velocity) + PROGRESS_PULL * behind
     planned = float(along @ sample[1, columns["com"]])
-    rate = (speed * planned + CREEP * CREEP) / (planned * planned + CREEP * CREEP)
+    straight = float(along @ sample[0, columns["tangent"]]) ** 4  # 0 for skis across the track
+    rate = 1.0 + straight * (speed - planned) * planned / (planned * planned + CREEP * CREEP)
     return min(max(rate, 0.0), FASTEST_RATE)
 
 

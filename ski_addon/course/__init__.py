@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..spec import RunSpec
 from ..terrain import Terrain
+from .finish import with_run_out
 from .track import LEFT, RIGHT, TRANSITION, Track
 from .turns import build_turn_track
 
@@ -12,4 +13,5 @@ __all__ = ["LEFT", "RIGHT", "TRANSITION", "Track", "build_track"]
 
 def build_track(spec: RunSpec, terrain: Terrain) -> Track:
     """Return the track of `spec.course` on `terrain`; raises `PlanInfeasible` where it cannot be skied."""
-    return build_turn_track(spec, terrain)
+    track = build_turn_track(spec, terrain)
+    return with_run_out(track, spec, terrain) if spec.course.finish == "stop" else track

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-COUNT=[]
+COUNT = []
 _STEPS = 60
 _TOLERANCE = 1e-12
 _CENTRING = 0.15

@@ -144,7 +144,14 @@ def _change(before: Line, after: Line) -> float:
 
 def speed_control(spec: RunSpec, track: Track) -> SpeedControl:
     """Return what the run document says about the skier's speed."""
-    return SpeedControl()
+    technique, side = spec.technique, float(track.curvature[np.argmax(track.arc_length >= track.stop_from) - 1])
+    limits = [limit for limit in (technique.speed_limit, spec.course.target_speed) if not isinstance(limit, str)]
+    return SpeedControl(
+        most=min(limits, default=np.inf),
+        skid=np.deg2rad(technique.skid_max_deg),
+        deceleration=technique.stop_deceleration,
+        stop_side=1 if side >= 0 else -1,
+    )
 
 
 def _angulation(spec: RunSpec, speed: np.ndarray, curvature: np.ndarray) -> np.ndarray:

@@ -33,13 +33,13 @@ CONTROL_TIME = 0.7
 """Time [s] in which a speed above the wanted one is brought down."""
 LEAST_SIDE_FORCE = 1.5
 """Side force per mass [m/s^2] below which skis are turned less and less: a ski without it does not brake."""
-LAG = 0.07
+LAG = 0.10
 """Time [s] of each of three lags in which the skis follow the wanted steering angle, so that they turn smoothly."""
-FASTEST_STEERING = np.deg2rad(200.0)
+FASTEST_STEERING = np.deg2rad(130.0)
 """Most change of the wanted steering angle [rad/s]."""
 ACROSS = 0.5 * np.pi
 """Steering angle of a stop."""
-BRAKE_FROM, BRAKE_TO = np.deg2rad(50.0), np.deg2rad(85.0)
+BRAKE_FROM, BRAKE_TO = np.deg2rad(74.0), np.deg2rad(89.0)
 """Steering angles between which a stop begins to brake."""
 SOFT_SPEED = 1.0
 """Speed [m/s] below which a stop brakes in proportion to the speed, so that it ends without a jerk."""

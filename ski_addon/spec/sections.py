@@ -154,10 +154,17 @@ class CourseSpec:
         required=True,
         kinds=_TURNS,
     )
-    turn_radius: float = number(
-        15.0, 3, 200, "m", "Turn radius", "Radius of each turn", required=True, kinds=_TURNS
+    turn_radius: float = number(15.0, 3, 200, "m", "Turn radius", "Radius of each turn", required=True, kinds=_TURNS)
+    start_speed: float = number(5.0, 0, 40, "m/s", "Start speed", "Speed at the start of the track; 0 = from rest")
+    target_speed: float | Literal["free"] = number(
+        "free", 2, 40, "m/s", "Target speed", "Speed to hold by skidding; free = as slope and snow give it", word="free"
     )
-    start_speed: float = number(5.0, 0.3, 40, "m/s", "Start speed", "Speed at the start of the track")
+    finish: str = choice(
+        "glide",
+        ("glide", "stop"),
+        "Finish",
+        "glide = the run ends moving; stop = it runs out down the fall line, the skis are thrown across and it stands",
+    )
     first_turn: str = choice(
         "right", ("right", "left"), "First turn", "Side of the first turn", kinds=("turns", "gates", "bumps")
     )
@@ -292,6 +299,21 @@ class TechniqueSpec:
         "Angulation",
         "How far the upper body stays upright: 0 = leans with the legs, -1 = upright; auto = from speed and radius",
         word="auto",
+    )
+    speed_limit: float | Literal["unlimited"] = number(
+        "unlimited",
+        2,
+        40,
+        "m/s",
+        "Speed limit",
+        "Speed above which the skier brakes by skidding, whatever the course says",
+        word="unlimited",
+    )
+    skid_max_deg: float = number(
+        35.0, 0, 50, "deg", "Most skid", "Largest angle between skis and track when braking in turns", advanced=True
+    )
+    stop_deceleration: float = number(
+        4.0, 1, 7, "m/s^2", "Stop deceleration", "How hard the skier brakes to a stop", advanced=True
     )
     knee_bend_deg: float = number(60.0, 30, 100, "deg", "Knee bend", "Knee bend of the middle stance")
     absorption: float = number(
