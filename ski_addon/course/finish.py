@@ -11,6 +11,7 @@ from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
 from ..terrain import Terrain
+from .pace import speed_to_hold
 from .surface import SPACING, track_on_surface
 from .track import TRANSITION, Track
 
@@ -59,8 +60,7 @@ def coasting_speed(track: Track, spec: RunSpec) -> float:
     """Return about how fast [m/s] a skier who does not brake reaches the end of `track`, within the limits asked for."""
     snow = Snow.of(spec.snow, spec.skier)
     along, into = track.tangent @ GRAVITY, -(track.surface_normal @ GRAVITY)
-    limits = [limit for limit in (spec.technique.speed_limit, spec.course.target_speed) if not isinstance(limit, str)]
-    most = min((1.1 * limit for limit in limits), default=math.inf)
+    most = 1.1 * speed_to_hold(spec)
     energy = 0.5 * track.start_speed**2
     for i, step in enumerate(np.diff(track.arc_length).tolist()):
         speed = math.sqrt(2.0 * energy)

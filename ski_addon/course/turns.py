@@ -16,6 +16,7 @@ from ..gravity import STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import CourseSpec, RunSpec
 from ..terrain import PlaneTerrain, Terrain
+from .pace import speed_to_hold
 from .surface import track_on_surface
 from .track import LEFT, RIGHT, TRANSITION, Track
 
@@ -23,6 +24,10 @@ SAMPLE_TIME = 0.005
 """Planned time between neighbouring places of a track [s]."""
 SLOWEST = 0.15
 """A skier slower than this [m/s] has stopped."""
+BRAKING_TIME = 0.7
+"""Time [s] in which a skier brings down a speed above the one to hold."""
+SLOW_START, SPEED_TO_TURN, LONGEST_SCHUSS = 0.3, 4.0, 12.0
+"""A start slower than the first [m/s] is followed by a straight run up to the second, of the third [s] at most."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +59,8 @@ class TurnSchedule:
         return np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
 
 
-def turn_schedule(course: CourseSpec) -> TurnSchedule:
-    """Return the curvature schedule of `course`."""
+def turn_schedule(course: CourseSpec, schuss: float = 0.0) -> TurnSchedule:
+    """Return the curvature schedule of `course`, after a straight run of `schuss` [s] if it starts straight."""
     side = LEFT if course.first_turn == "left" else RIGHT
     durations: list[float] = []
     curvature = [0.0] if course.entry == "straight" else [side / course.turn_radius]
@@ -69,6 +74,8 @@ def turn_schedule(course: CourseSpec) -> TurnSchedule:
         turn.append(number)
 
     if course.entry == "straight":
+        if schuss:
+            add(schuss, 0.0, TRANSITION, 1)
         add(0.5 * course.transition_duration, side / course.turn_radius, TRANSITION, 1)
     for number in range(1, course.turn_count + 1):
         bend = side / course.turn_radius
@@ -91,13 +98,13 @@ def build_turn_track(spec: RunSpec, terrain: Terrain) -> Track:
     turn heads down it; otherwise the whole track would drift to one side.
     Raises `PlanInfeasible` when friction stops the skier.
     """
-    schedule = turn_schedule(spec.course)
-    snow = Snow.of(spec.snow, spec.skier)
     steepness, normal = float(np.sin(terrain.mean_angle)), float(np.cos(terrain.mean_angle))
-    motion = _integrate(schedule, snow, spec.course.start_speed, steepness, normal)
+    glide = _Glide(Snow.of(spec.snow, spec.skier), steepness, normal, speed_to_hold(spec))
+    schedule = turn_schedule(spec.course, _schuss_time(glide, spec.course.start_speed))
+    motion = _integrate(schedule, glide, spec.course.start_speed)
     heading0 = _start_heading(schedule, motion, spec.course)
     if heading0:
-        motion = _integrate(schedule, snow, spec.course.start_speed, steepness, normal, heading0)
+        motion = _integrate(schedule, glide, spec.course.start_speed, heading0)
     return _track(schedule, motion, terrain, spec.course.start_speed)
 
 
@@ -113,10 +120,26 @@ class _Motion:
     left: np.ndarray
 
 
-def _integrate(
-    schedule: TurnSchedule, snow: Snow, speed: float, steepness: float, normal: float, heading: float = 0.0
-) -> _Motion:
-    """Integrate speed, heading and position by classical Runge-Kutta steps; `steepness`, `normal` are sin, cos."""
+@dataclass(frozen=True)
+class _Glide:
+    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and a speed `most` [m/s] that is held
+    by braking.
+    """
+
+    snow: Snow
+    steepness: float
+    normal: float
+    most: float
+
+    def acceleration(self, speed: float, cosine: float) -> float:
+        """Return dv/dt [m/s^2] at `speed` where the track's direction has `cosine` with the fall line."""
+        along = STANDARD_GRAVITY * self.steepness * cosine
+        glide = self.snow.glide_acceleration(along, STANDARD_GRAVITY * self.normal, speed)
+        return min(glide, (self.most - speed) / BRAKING_TIME) if speed > self.most - glide * BRAKING_TIME else glide
+
+
+def _integrate(schedule: TurnSchedule, glide: _Glide, speed: float, heading: float = 0.0) -> _Motion:
+    """Integrate speed, heading and position by classical Runge-Kutta steps."""
     end = float(schedule.time[-1])
     count = max(int(np.ceil(end / SAMPLE_TIME)), 20)
     step = end / count
@@ -126,8 +149,7 @@ def _integrate(
     def rate(state: np.ndarray, curvature: float) -> np.ndarray:
         v, psi = state[1], state[2]
         c, s = np.cos(psi), np.sin(psi)
-        glide = snow.glide_acceleration(STANDARD_GRAVITY * steepness * c, STANDARD_GRAVITY * normal, v)
-        return np.array((v, glide, curvature * v, v * c, v * s))
+        return np.array((v, glide.acceleration(v, c), curvature * v, v * c, v * s))
 
     states = np.empty((count + 1, 5))
     states[0] = (0.0, speed, heading, 0.0, 0.0)
@@ -138,9 +160,17 @@ def _integrate(
         k3 = rate(x + 0.5 * step * k2, bend[2 * i + 1])
         k4 = rate(x + step * k3, bend[2 * i + 2])
         states[i + 1] = x + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        if states[i + 1, 1] < SLOWEST:
+        if states[i + 1, 1] < min(SLOWEST, states[i, 1]):
             raise _stopped(time[i + 1], float(x[0]), int(schedule.labels_at(time[i + 1])[1]))
     return _Motion(time, *components(states))
+
+
+def _schuss_time(glide: _Glide, speed: float) -> float:
+    """Return how long [s] a slow starter runs straight down until he is fast enough to turn."""
+    gain = glide.acceleration(speed, 1.0)
+    if speed >= SLOW_START or gain <= 0.0:
+        return 0.0
+    return min((SPEED_TO_TURN - speed) / gain, LONGEST_SCHUSS)
 
 
 def _stopped(time: float, arc: float, turn: int) -> PlanInfeasible:

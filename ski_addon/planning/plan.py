@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..course import Track
+from ..course import Track, speed_to_hold
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
-from .absorption import legs_for
+from .absorption import Sink, legs_for, missing_length
 from .checks import check_arrival, check_lean, check_load, check_ranges, check_reach
 from .line import Line, TrackSpline
 from .pendulum import Pendulum, balanced_pendulum, upright
@@ -72,6 +72,12 @@ class MotionPlan:
         return float(self.time[-1])
 
 
+MOST_ANGULATION = np.deg2rad(38.0)
+"""Angle between the upper body's lean and the legs' that hips approach in deep leans."""
+MOST_SINKS = 8
+"""How often a plan is made anew with a lower body where legs were too short."""
+
+
 def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     """Plan how the skier of `model` skis `track`, which carries the ground's frames.
 
@@ -79,16 +85,20 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach.
     """
     stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg))
-    line, pendulum = _balance(spec, track, stance)
-    if spec.technique.inclination:
-        check_lean(spec, line, pendulum, stance.height)
-        check_load(spec, line, pendulum)
-    frames = skis_frames(line.tangent, line.surface_normal, line.steering)
-    com = line.position + pendulum.y[:, None] * frames[..., 1] + pendulum.h[:, None] * frames[..., 2]
-    angulation = _angulation(spec, line.speed, line.curvature)
-    poses = plan_poses(
-        model.skeleton, stance, frames, line.position, com, pendulum.inclination, angulation, line.steering
-    )
+    sink = Sink(track)
+    for _ in range(MOST_SINKS):
+        line, pendulum = _balance(spec, track, stance, sink)
+        if spec.technique.inclination:
+            check_lean(spec, line, pendulum, stance.height)
+            check_load(spec, line, pendulum)
+        frames = skis_frames(line.tangent, line.surface_normal, line.steering)
+        com = line.position + pendulum.y[:, None] * frames[..., 1] + pendulum.h[:, None] * frames[..., 2]
+        angulation = _angulation(spec, line, pendulum.inclination)
+        poses = plan_poses(
+            model.skeleton, stance, frames, line.position, com, pendulum.inclination, angulation, line.steering
+        )
+        if not sink.deepen(line.arc_length, missing_length(model.skeleton, poses)):
+            break
     check_reach(line, poses)
     check_ranges(line, poses, model)
     tightest = max(float(np.max(np.abs(line.curvature))), 1e-9)
@@ -116,7 +126,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     )
 
 
-def _balance(spec: RunSpec, track: Track, stance: Stance) -> tuple[Line, Pendulum]:
+def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[Line, Pendulum]:
     """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
     snow, spline = Snow.of(spec.snow, spec.skier), TrackSpline(track)
     control = speed_control(spec, track)
@@ -130,7 +140,7 @@ def _balance(spec: RunSpec, track: Track, stance: Stance) -> tuple[Line, Pendulu
         line = spline.line(ride, snow)
         if not spec.technique.inclination:
             return line, upright(line, stance.height)
-        pendulum = balanced_pendulum(line, legs_for(spec, track, line, stance))
+        pendulum = balanced_pendulum(line, legs_for(spec, track, line, stance, sink))
         if before is not None and _change(before, line) < 1e-6:
             break
         before, body = line, Body(pendulum.normal, pendulum.swing, line.arc_length)
@@ -145,23 +155,24 @@ def _change(before: Line, after: Line) -> float:
 def speed_control(spec: RunSpec, track: Track) -> SpeedControl:
     """Return what the run document says about the skier's speed."""
     technique, side = spec.technique, float(track.curvature[np.argmax(track.arc_length >= track.stop_from) - 1])
-    limits = [limit for limit in (technique.speed_limit, spec.course.target_speed) if not isinstance(limit, str)]
     return SpeedControl(
-        most=min(limits, default=np.inf),
+        most=speed_to_hold(spec),
         skid=np.deg2rad(technique.skid_max_deg),
         deceleration=technique.stop_deceleration,
         stop_side=1 if side >= 0 else -1,
     )
 
 
-def _angulation(spec: RunSpec, speed: np.ndarray, curvature: np.ndarray) -> np.ndarray:
+def _angulation(spec: RunSpec, line: Line, inclination: np.ndarray) -> np.ndarray:
     """Return beta_a (n,): the spec's constant, or from speed and radius.
 
     The paper leaves beta_a constant and notes that faster and tighter turns should angulate more; here it grows with
     the turn's sideways acceleration in units of gravity, from 0.35 in a straight run towards 0.75. The growth is even
-    in the curvature, so that it stays smooth where a turn changes side.
+    in the curvature, so that it stays smooth where a turn changes side. Hips angulate by `MOST_ANGULATION` at most.
     """
     if spec.technique.angulation != "auto":
-        return np.full_like(speed, float(spec.technique.angulation))
-    sideways = speed**2 * curvature / STANDARD_GRAVITY
-    return -(0.35 + 0.40 * sideways**2 / (0.36 + sideways**2))
+        return np.full_like(line.speed, float(spec.technique.angulation))
+    sideways = line.speed**2 * line.curvature / STANDARD_GRAVITY
+    share = 0.35 + 0.40 * sideways**2 / (0.36 + sideways**2)
+    angle = np.maximum(share * np.abs(inclination), 1e-6)
+    return -share * MOST_ANGULATION * np.tanh(angle / MOST_ANGULATION) / angle
