@@ -150,7 +150,7 @@ def test_stop_turns_the_skis_across_brakes_and_stands(side):
     assert standing == pytest.approx(1.0, abs=0.02)
     assert stop.acceleration.min() == pytest.approx(-4.0, abs=0.05)
     assert not stop.steering[stop.arc_length < 4.0].any()
-    assert stop.arc_length[-1] < 4.0 + 8.0 * 0.9 + 8.5**2 / 8.0 + 1.0
+    assert stop.arc_length[-1] < 4.0 + 8.0 * 1.4 + 8.5**2 / 8.0 + 1.0
 
 
 def test_steering_is_smooth():
