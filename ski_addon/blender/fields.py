@@ -19,17 +19,21 @@ UNITS = {"m": "LENGTH", "m/s": "VELOCITY", "s": "TIME_ABSOLUTE", "kg": "MASS", "
 """Blender's unit by the table's; others are shown as plain numbers."""
 WORD_SUFFIX = "_word"
 """Ending of the switch that stands for a field's word ("auto", "unlimited")."""
+FILE_SUFFIX = "_file"
+"""Ending of the fields that name a file."""
 
 
 def make_properties(info: FieldInfo, value: Any) -> dict[str, Any]:
     """Return the Blender properties of one field by name, with the default `value` of the run document."""
-    common = {"name": info.label or info.name, "description": info.doc}
+    common: dict[str, Any] = {"name": info.label or info.name, "description": info.doc}
     if info.kind == FLAG:
         return {info.name: bpy.props.BoolProperty(default=value, **common)}
     if info.kind == CHOICE:
         items = [(choice, choice.capitalize(), "") for choice in info.choices]
         return {info.name: bpy.props.EnumProperty(items=items, default=value, **common)}
     if info.kind == TEXT:
+        if info.name.endswith(FILE_SUFFIX):
+            common |= {"subtype": "FILE_PATH", "options": {"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"}}
         return {info.name: bpy.props.StringProperty(default=value, maxlen=int(info.high or 0), **common)}
     if info.kind == WHOLE:
         low, high = int(info.low or 0), int(info.high or 2**31 - 1)
@@ -72,6 +76,8 @@ def read_field(group: Any, info: FieldInfo) -> Any:
     if info.word and getattr(group, info.name + WORD_SUFFIX):
         return info.word
     value = getattr(group, info.name)
+    if info.name.endswith(FILE_SUFFIX) and value.startswith("//"):
+        return bpy.path.abspath(value)  # Blender writes paths relative to its own file so
     if info.kind in (FLAG, CHOICE, TEXT, WHOLE):
         return value
     return shortest(math.degrees(value) if info.unit == "deg" else value, info)

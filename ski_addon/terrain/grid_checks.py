@@ -47,14 +47,20 @@ def checked_heights(
     if start.shape != (2,) or not np.all(np.isfinite(start)):
         raise TerrainError(name, f"its origin is {origin}", "give x and y of the first sample in metres")
     z = raw.astype(float)
-    known = np.isfinite(z)
-    if not np.all(known):
-        i, j = (int(k) for k in np.unravel_index(int(np.argmin(known)), z.shape))
-        count = int(z.size - np.count_nonzero(known))
-        problem = f"height[{i}, {j}] = {z[i, j]} is a hole, the first of {count}"
-        hint = "fill holes with heights of their neighbours, or cut out a part without any"
-        raise TerrainError(name, problem, hint, index=(i, j), value=float(z[i, j]))
+    check_holes(z, name)
     return z, (pair[0], pair[1]), (float(start[0]), float(start[1]))
+
+
+def check_holes(z: np.ndarray, name: str) -> None:
+    """Raise `TerrainError` if any of the heights `z` (nx, ny) is not a finite number."""
+    known = np.isfinite(z)
+    if np.all(known):
+        return
+    i, j = (int(k) for k in np.unravel_index(int(np.argmin(known)), z.shape))
+    count = int(z.size - np.count_nonzero(known))
+    problem = f"height[{i}, {j}] = {z[i, j]} is a hole, the first of {count}"
+    hint = "fill holes with heights of their neighbours, or cut out a part without any"
+    raise TerrainError(name, problem, hint, index=(i, j), value=float(z[i, j]))
 
 
 def checked_steps(z: np.ndarray, spacing: tuple[float, float], fall: float, more: float, name: str) -> None:

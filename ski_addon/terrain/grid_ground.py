@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import SpecError
 from ..spec import SlopeSpec, find_ground
 from .grid import HeightGrid
+from .grid_checks import check_holes
 from .grid_files import GridData, Pair, read_grid
 
 QUARTER_TURNS = {"bottom": 0, "left": 1, "top": 2, "right": 3}
@@ -25,6 +26,7 @@ def build_grid(slope: SlopeSpec) -> HeightGrid:
     path = find_ground(slope.grid_file)
     name = f"slope.grid_file {path.name}"
     data = read_grid(path, name)
+    check_holes(data.heights, name)  # before it is turned, so that the index is that of the file
     heights = data.heights * slope.grid_height if data.is_image else data.heights
     spacing = _spacing(data, slope, path.name)
     heights, spacing, origin = _turned(heights, spacing, data.origin, QUARTER_TURNS[slope.grid_downhill])

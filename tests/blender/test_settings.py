@@ -112,3 +112,17 @@ def test_settings_are_saved_with_the_file(core, scene, properties, tmp_path) -> 
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     bpy.ops.wm.open_mainfile(filepath=str(path))
     assert properties.read_spec(bpy.context.scene.ski).course.turn_radius == 23.0
+
+
+def test_a_file_beside_the_blend_file_is_found_by_the_run(core, scene, properties, tmp_path) -> None:
+    """Blender's file browser writes paths relative to the saved file, with two slashes in front."""
+    import bpy
+
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    settings = bpy.context.scene.ski
+    assert settings.slope.bl_rna.properties["grid_file"].subtype == "FILE_PATH"
+    settings.slope.grid_file = "//grounds/hill.npz"
+    assert properties.read_spec(settings).slope.grid_file == str(tmp_path / "grounds" / "hill.npz")
+    for untouched in ("/data/hill.npz", "rolling_hill", ""):
+        settings.slope.grid_file = untouched
+        assert properties.read_spec(settings).slope.grid_file == untouched

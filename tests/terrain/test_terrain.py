@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ski_addon.spec import SlopeSpec
-from ski_addon.terrain import build_terrain
+from ski_addon.terrain import HeightGrid, build_terrain
 
 GROUNDS = {
     "plane": SlopeSpec(angle_deg=12),
@@ -20,12 +20,18 @@ GROUNDS = {
     "wide moguls": SlopeSpec(kind="moguls", angle_deg=10, bump_start=3, mogul_across=6.0, mogul_height=0.8),
     "one steep mogul": SlopeSpec(kind="moguls", angle_deg=30, mogul_count=1, mogul_height=1.5, mogul_spacing=5.0),
 }
+ROUGH = np.random.default_rng(4).uniform(-0.2, 0.2, (21, 9)) - 0.5 * np.arange(21.0)[:, None]
+GRIDS = {
+    "rolling hill": lambda: build_terrain(SlopeSpec(kind="grid", angle_deg=10, grid_file="rolling_hill")),
+    "rough grid, ending among the places": lambda: HeightGrid(ROUGH, (2.0, 3.0), (1.0, -12.0), angle=0.1),
+    "smallest grid": lambda: HeightGrid(ROUGH[:4, :4], 5.0),
+}
 PLACES = np.random.default_rng(1).uniform((-10, -20), (60, 20), size=(400, 2)).T
 
 
-@pytest.fixture(params=GROUNDS, ids=lambda name: name.replace(" ", "-"))
+@pytest.fixture(params=[*GROUNDS, *GRIDS], ids=lambda name: name.replace(" ", "-"))
 def terrain(request):
-    return build_terrain(GROUNDS[request.param])
+    return GRIDS[request.param]() if request.param in GRIDS else build_terrain(GROUNDS[request.param])
 
 
 def test_gradient_is_the_finite_difference_of_the_height(terrain):
