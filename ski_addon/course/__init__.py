@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from ..spec import RunSpec
 from ..terrain import Terrain
+from .bump_line import build_bump_track
+from .gates import Gates, build_gate_track, course_gates
+from .path import build_path_track
 from .track import LEFT, RIGHT, TRANSITION, Track
 from .turns import build_turn_track
 
-__all__ = ["LEFT", "RIGHT", "TRANSITION", "Track", "build_track"]
+__all__ = ["LEFT", "RIGHT", "TRANSITION", "Gates", "Track", "build_track", "course_gates"]
+
+_BUILDERS = {
+    "turns": build_turn_track,
+    "gates": build_gate_track,
+    "path": build_path_track,
+    "bumps": build_bump_track,
+}
 
 
 def build_track(spec: RunSpec, terrain: Terrain) -> Track:
-    """Return the track of `spec.course` on `terrain`; raises `PlanInfeasible` where it cannot be skied."""
-    return build_turn_track(spec, terrain)
+    """Return the track of `spec.course` on `terrain`.
+
+    Raises `SpecError` or `PlanInfeasible` for a gate, point or turn that cannot be skied.
+    """
+    return _BUILDERS[spec.course.kind](spec, terrain)

@@ -154,9 +154,7 @@ class CourseSpec:
         required=True,
         kinds=_TURNS,
     )
-    turn_radius: float = number(
-        15.0, 3, 200, "m", "Turn radius", "Radius of each turn", required=True, kinds=_TURNS
-    )
+    turn_radius: float = number(15.0, 3, 200, "m", "Turn radius", "Radius of each turn", required=True, kinds=_TURNS)
     start_speed: float = number(5.0, 0.3, 40, "m/s", "Start speed", "Speed at the start of the track")
     first_turn: str = choice(
         "right", ("right", "left"), "First turn", "Side of the first turn", kinds=("turns", "gates", "bumps")
