@@ -73,8 +73,8 @@ def _way(spec: RunSpec) -> float:
         return spec.slope.bump_start + {"moguls": moguls, "bumps": bumps}.get(spec.slope.kind, 0.0)
     if course.kind == "gates" and course.gate_setting != "list":
         return course.gate_count * math.hypot(gate_defaults(course).spacing, gate_defaults(course).offset)
-    corners = spec.gate if course.kind == "gates" else spec.point
-    return sum(math.hypot(b.x - a.x, b.y - a.y) for a, b in itertools.pairwise(corners))
+    corners = [(row.x, row.y) for row in (spec.gate if course.kind == "gates" else spec.point)]
+    return sum(math.dist(a, b) for a, b in itertools.pairwise(corners))
 
 
 def estimate_turns(spec: RunSpec, turn_count: int) -> Estimate:
