@@ -24,7 +24,7 @@ STEEPEST = np.sin(np.deg2rad(78.0))
 """A line never turns farther from the fall line than the angle of this sine."""
 _KNOT_SPACING = 0.8
 _FEWEST_CELLS, _MOST_CELLS = 10, 60
-_ROUNDS = 60
+_ROUNDS, _PATIENCE = 60, 12
 _SETTLED = 1e-10
 _STIFF = 1e5
 """Weight of an asked radius and of falling curvature, in units of what smoothness weighs."""
@@ -110,25 +110,37 @@ def fair_line(poles: Poles, lead_in: float, lead_out: float) -> FairLine:
     gaps = np.diff(np.concatenate(([begin], poles.down, [end])))
     most_shift = 0.45 * np.minimum(gaps[1:], gaps[:-1])
     apex, sine, settled = poles.down.astype(float), None, False
-    for _ in range(_ROUNDS):
+    share, error = np.full(len(poles), 0.7), np.zeros(len(poles))
+    for count in range(_ROUNDS):
         problem = _Problem.at(poles, apex, begin, end)
         solved = problem.solve(sine)
         shift = poles.distance * poles.side * np.clip(solved(apex), -STEEPEST, STEEPEST)
         moved = poles.down + np.clip(shift, -most_shift, most_shift)
+        largest = np.max(np.abs(solved(problem.points)))
         if sine is not None:
             change = np.max(np.abs(solved(problem.points) - sine(problem.points)))
             settled = bool(max(change, np.max(np.abs(moved - apex))) < _SETTLED)
         sine = solved
-        if settled:
+        if settled or (count > _PATIENCE and largest > 1.0):
             break
-        apex = 0.5 * (apex + moved)
+        share = _secant_share(share, error, moved - apex)
+        error = moved - apex
+        apex = apex + share * error
     start = _start_left(poles, FairLine(begin, end, sine, 0.0, apex, settled))
     return FairLine(begin, end, sine, start, apex, settled)
 
 
+def _secant_share(share: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.ndarray:
+    """Return what share (n,) of the errors to correct next, from how the errors answered to the last correction."""
+    gained = before - now
+    with np.errstate(divide="ignore", invalid="ignore"):
+        secant = np.clip(share * before / gained, 0.3, 1.2)
+    return np.where(np.abs(gained) > 1e-9, secant, share)
+
+
 def _start_left(poles: Poles, line: FairLine) -> float:
     """Return where a line must start [m left] to pass the first pole at its distance."""
-    if line.steepest >= 1.0:
+    if line.steepest >= 0.999:
         return 0.0
     cosine = np.sqrt(1.0 - line.sines(line.apex[0]) ** 2)
     return float(poles.left[0] - poles.side[0] * poles.distance[0] * cosine - line.left_at(line.apex[:1])[0])

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-COUNT = []
 _STEPS = 60
 _TOLERANCE = 1e-12
 _CENTRING = 0.15
@@ -38,7 +37,7 @@ def solve_quadratic(
     size = max(float(np.max(np.abs(below @ x))), 1e-6)
     slack, force = np.maximum(-(below @ x), 0.1 * size), np.full(below.shape[0], size)
     multiplier = np.zeros(m)
-    for N in range(_STEPS):
+    for _ in range(_STEPS):
         target = _CENTRING * float(slack @ force) / len(slack)
         dual = cost @ x - pull + rows.T @ multiplier + below.T @ force
         missing = below @ x - softness * force + slack
@@ -52,7 +51,6 @@ def solve_quadratic(
         slack, force = slack + length * slack_step, force + length * force_step
         if float(np.max(slack * force)) < _TOLERANCE * size**2 and float(np.max(np.abs(missing))) < 1e-10:
             break
-    COUNT.append(N)
     return x
 
 

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from .gate_defaults import gate_defaults
+
 if TYPE_CHECKING:
     from .run_spec import RunSpec
+    from .sections import CourseSpec
 
 BYTES_PER_STEP = 3100
 """Memory of one recorded step [bytes]: about 195 numbers of 8 bytes, twice while the recording is put together."""
@@ -45,13 +50,31 @@ class Estimate:
 
 
 def estimate(spec: RunSpec) -> Estimate:
-    """Return what simulating `spec` would take, from the durations its course asks for."""
-    course = spec.course
-    turns = course.turn_count - (0.5 if course.half_first_turn else 0.0)
-    transitions = course.turn_count - (0 if course.entry == "straight" else 1)  # two halves lead in and out
-    seconds = turns * course.turn_duration + transitions * course.transition_duration
+    """Return what simulating `spec` would take, from what its course asks for."""
+    seconds = _turning_seconds(spec.course) if spec.course.kind == "turns" else _way(spec) / spec.course.start_speed
     steps = round(seconds / spec.simulation.time_step)
     return Estimate(seconds, steps, steps * BYTES_PER_STEP, SECONDS_TO_PLAN + steps * SECONDS_PER_STEP)
+
+
+def _turning_seconds(course: CourseSpec) -> float:
+    turns = course.turn_count - (0.5 if course.half_first_turn else 0.0)
+    transitions = course.turn_count - (0 if course.entry == "straight" else 1)  # two halves lead in and out
+    return turns * course.turn_duration + transitions * course.transition_duration
+
+
+def _way(spec: RunSpec) -> float:
+    """Return about how long the track is [m]; skiing it at the start speed is a fair guess of the time it takes."""
+    course = spec.course
+    if course.kind == "bumps" and not isinstance(course.run_length, str):
+        return course.run_length
+    if course.kind == "bumps":
+        moguls = spec.slope.mogul_count * spec.slope.mogul_spacing
+        bumps = 2.0 * spec.slope.bump_count * spec.slope.bump_width
+        return spec.slope.bump_start + {"moguls": moguls, "bumps": bumps}.get(spec.slope.kind, 0.0)
+    if course.kind == "gates" and course.gate_setting != "list":
+        return course.gate_count * math.hypot(gate_defaults(course).spacing, gate_defaults(course).offset)
+    corners = [(row.x, row.y) for row in (spec.gate if course.kind == "gates" else spec.point)]
+    return sum(math.dist(a, b) for a, b in itertools.pairwise(corners))
 
 
 def estimate_turns(spec: RunSpec, turn_count: int) -> Estimate:

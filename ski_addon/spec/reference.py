@@ -32,8 +32,8 @@ turn_radius = 15
 ```
 
 Keys marked *required* must be in a file; all others have the default shown. A meaning that begins with a word such as
-`gates` is that of a key for that `kind` of its section only; it does nothing, and is not required, for the others. Units are SI; angles are in degrees only in
-keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an
+`gates` is that of a key for that `kind` of its section only; it does nothing, and is not required, for the others.
+Units are SI; angles are in degrees only in keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an
 unknown key, a wrong type or a value outside its range is refused with one line that names the file, the line in it, the
 key, its value and what is allowed:
 
