@@ -48,7 +48,7 @@ def build_parser(prog: str = "python -m ski_addon") -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"Ski Addon {__version__}")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for add in (_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_render, _add_validate, _add_demo):
+    for add in COMMANDS:
         add(subparsers)
     return parser
 
@@ -226,6 +226,33 @@ def _add_validate(subparsers: _Subparsers) -> None:
     parser.add_argument("--json", action="store_true", help="print the findings as JSON on stdout")
 
 
+def _add_robustness(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "robustness",
+        "push the skier of a run in many ways and say what he survives",
+        "Every combination of the options below is a run of its own, up to 5 s after the push's end. A course of\n"
+        "linked turns is made long enough. Writes robustness.json, robustness.csv and (with matplotlib)\n"
+        "robustness.png.",
+    )
+    _add_spec(parser)
+    _add_output(parser, "DIR", "folder for the results", required=True)
+    for name, metavar, text in (
+        ("forces", "N,N,...", "sizes of the push (50,100,150,200)"),
+        ("bodies", "NAME,...", "bodies to push (head,ski.R,abdomen,shank.L)"),
+        ("directions", "NAME,...", "left, right, forward, back, up, down (the first four)"),
+        ("speeds", "M/S,...", "start speeds of the run (5,9)"),
+        ("moments", "NAME,...", "turn = at its apex, transition = between two (both)"),
+        ("duration", "SECONDS", "how long a push acts (0.5)"),
+        ("jobs", "COUNT", "processes that run at the same time (as many as there are processors)"),
+    ):
+        parser.add_argument(f"--{name}", metavar=metavar, help=text)
+    parser.add_argument(
+        "--bisect", action="store_true", help="for each row also find the largest force survived, up to 500 N by 25 N"
+    )
+    _add_talk(parser)
+
+
 def _add_demo(subparsers: _Subparsers) -> None:
     parser = _command(
         subparsers,
@@ -235,3 +262,10 @@ def _add_demo(subparsers: _Subparsers) -> None:
     )
     _add_output(parser, "DIR", "folder for the results", required=True)
     _add_talk(parser)
+
+
+COMMANDS = (
+    *(_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_render, _add_validate),
+    *(_add_robustness, _add_demo),
+)
+"""What adds each command to the parser, in the order of the help."""

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .simulation import Recording
 
 DEMO_PRESET = "giant_slalom"
+TABLE_OPTIONS = ("forces", "bodies", "directions", "speeds", "moments", "duration")
+"""Options of `robustness` that make its table."""
 
 
 def run_command(arguments: argparse.Namespace) -> int:
@@ -101,6 +103,23 @@ def validate_command(arguments: argparse.Namespace) -> int:
             found.append({"spec": name, "valid": True, "spec_hash": spec.content_hash()})
     talk.give(found)
     return exit_code
+
+
+def robustness_command(arguments: argparse.Namespace) -> int:
+    """`robustness`: push the skier of a run in many ways, and say what became of him."""
+    from .robustness.cases import read_jobs, read_table
+
+    talk, spec = _talk(arguments), _read_spec(arguments.spec, arguments)
+    table = read_table(**{name: getattr(arguments, name) for name in TABLE_OPTIONS})
+    jobs = min(read_jobs(arguments.jobs), len(table.cases))
+    talk.say(f"{spec.name}: {len(table.cases)} pushed runs in {jobs} processes")
+    with atomic.output_folder(arguments.output) as folder:
+        summary, lines = results.run_robustness(spec, table, jobs, folder, talk, grow=arguments.bisect)
+    for line in lines:
+        talk.say(line)
+    talk.say(f"results in {folder}")
+    talk.give(summary)
+    return 0
 
 
 def demo_command(arguments: argparse.Namespace) -> int:

@@ -25,6 +25,7 @@ from .spec import RunSpec
 from .talk import Talk, json_text
 
 if TYPE_CHECKING:
+    from .robustness import PushTable
     from .simulation import Recording
 
 Progress = Callable[[float, str], Any]
@@ -84,6 +85,24 @@ def simulate_run(spec: RunSpec, progress: Progress) -> tuple[Recording, dict[str
     progress(0.0, "planning")
     recording, step_seconds = run_simulation(make_plan(spec), progress)
     return recording, summarise(recording, step_seconds)
+
+
+def run_robustness(
+    spec: RunSpec, table: PushTable, jobs: int, folder: Path, talk: Talk, *, grow: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Run a table of pushes and write its files into `folder`; returns its summary and its lines for a screen."""
+    from . import robustness
+    from .robustness.summary import table_lines
+
+    with talk.progress() as progress:
+        outcomes = robustness.run_table(spec, table, jobs, progress, grow=grow)
+    picture = _has_matplotlib()
+    if not picture:
+        talk.say("no robustness.png: matplotlib is not installed (pip install matplotlib)")
+    _quieten_matplotlib()
+    with _failures_in(folder):
+        summary = robustness.write_results(folder, spec, table, outcomes, picture=picture)
+    return summary, table_lines(table, outcomes)
 
 
 def load_recording(path: Path) -> Recording:
@@ -156,7 +175,7 @@ def _report_if_possible(recording: Recording, target: Path, talk: Talk) -> None:
 
 def draw_report(recording: Recording, target: Path) -> None:
     """Draw the plots of a recording into a picture."""
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its notes on font caches are not for our users
+    _quieten_matplotlib()
     from .report import save_report
 
     save_report(recording, target)
@@ -195,6 +214,10 @@ def run_blender_command(name: str, recording_path: Path, target: Path) -> None:
 def complain(message: str) -> None:
     """Say one failure on stderr and go on."""
     sys.stderr.write(f"ski_addon: {one_line(message)}\n")
+
+
+def _quieten_matplotlib() -> None:
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its notes on font caches are not for our users
 
 
 def _has_matplotlib() -> bool:
