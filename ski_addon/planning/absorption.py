@@ -13,20 +13,17 @@ from ..body import Skeleton
 from ..body.skeleton import SIDES
 from ..course import Track
 from ..spec import RunSpec
-from .line import Line
+from .line import PLACES_PER_METRE, Line, smooth_normals, smoothed_along
 from .pendulum import Legs
 from .pose import PlannedPoses
 from .stance import Stance
 
-SMOOTH_LENGTH = 6.0
-"""Standard deviation [m] of the window that smooths the ground: waves shorter than about three times this are bumps."""
 SINK_LENGTH, SINK_FACTOR = 1.2, 1.3
 """Standard deviation [m] of the way over which a skier sinks; and how much for each metre that a leg is too short."""
 LEAST_KNEE = np.deg2rad(18.0)
 """Straightest knee of a plan: a straight leg could not be controlled."""
 TOLERANCE = 1e-3
 """Length [m] by which a leg may be straighter than that."""
-_PLACES_PER_METRE = 10
 
 
 class Sink:
@@ -37,7 +34,7 @@ class Sink:
 
     def __init__(self, track: Track) -> None:
         """Start with none."""
-        count = max(int(np.ceil(track.length * _PLACES_PER_METRE)), 2)
+        count = max(int(np.ceil(track.length * PLACES_PER_METRE)), 2)
         self.arc_length = np.linspace(0.0, track.length, count + 1)
         self.depth = np.zeros(count + 1)
         self._per_metre = count / track.length
@@ -56,7 +53,7 @@ class Sink:
 
     def at(self, arc_length: np.ndarray) -> np.ndarray:
         """Return how deep (n,) [m] to stand at `arc_length` (n,) [m]."""
-        return np.interp(arc_length, self.arc_length, self.depth)
+        return _smoothly(arc_length, self.arc_length, self.depth)
 
 
 def missing_length(skeleton: Skeleton, poses: PlannedPoses) -> np.ndarray:
@@ -68,9 +65,11 @@ def missing_length(skeleton: Skeleton, poses: PlannedPoses) -> np.ndarray:
     return np.maximum(length - np.sqrt(straightest), 0.0).max(axis=1)
 
 
-def legs_for(spec: RunSpec, track: Track, line: Line, stance: Stance, sink: Sink) -> Legs:
-    """Return what the legs do along `line`: how they absorb bumps, and how far they may stretch to keep a load."""
-    wanted = -spec.technique.absorption * np.interp(line.arc_length, *bump_heights(track))
+def legs_for(spec: RunSpec, track: Track, heights: np.ndarray, line: Line, stance: Stance, sink: Sink) -> Legs:
+    """Return what the legs do along `line`: how they absorb bumps of `heights` (n,) [m] on the track, and how far they
+    may stretch to keep a load.
+    """
+    wanted = -spec.technique.absorption * _smoothly(line.arc_length, track.arc_length, heights)
     high, low = float(np.max(wanted, initial=0.0)), float(np.min(wanted, initial=0.0))
     share = min(1.0, (stance.extension + stance.retraction) / max(high - low, 1e-9))
     lower = max(share * high - stance.extension, 0.0)  # stand deeper, so that hollows can be reached
@@ -83,30 +82,17 @@ def legs_for(spec: RunSpec, track: Track, line: Line, stance: Stance, sink: Sink
     )
 
 
-def bump_heights(track: Track) -> tuple[np.ndarray, np.ndarray]:
-    """Return places (m,) along the track and how high the snow there is over its smooth course (m,) [m].
+def bump_heights(track: Track) -> np.ndarray:
+    """Return how high (n,) [m] the snow under the track is over the ground's smooth course.
 
-    Heights are along the surface normal, so that a plane has none, however the track winds on it.
+    Heights are along its normal, so that a plane has none, however the track winds on it.
     """
-    from scipy.ndimage import gaussian_filter1d
-
-    count = max(int(np.ceil(track.length * _PLACES_PER_METRE)), 2)
-    arc = np.linspace(0.0, track.length, count + 1)
-    margin = int(np.ceil(4.0 * SMOOTH_LENGTH * count / track.length))
-    columns = []
-    for axis in range(3):
-        path = np.interp(arc, track.arc_length, track.position[:, axis])
-        padded = (
-            np.pad(path, margin, mode="reflect", reflect_type="odd") if margin < count else _lengthened(path, margin)
-        )
-        smooth = gaussian_filter1d(padded, SMOOTH_LENGTH * count / track.length)
-        columns.append(
-            (path - smooth[margin:-margin]) * np.interp(arc, track.arc_length, track.surface_normal[:, axis])
-        )
-    return arc, np.sum(columns, axis=0)
+    over = track.position - smoothed_along(track, track.position)
+    return np.sum(over * smooth_normals(track), axis=1)
 
 
-def _lengthened(path: np.ndarray, margin: int) -> np.ndarray:
-    """Return a short path continued straight at both ends by `margin` places."""
-    steps = np.arange(1, margin + 1)
-    return np.concatenate((path[0] - (path[1] - path[0]) * steps[::-1], path, path[-1] + (path[-1] - path[-2]) * steps))
+def _smoothly(at: np.ndarray, places: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Interpolate by cubic splines: linear pieces would show in the load, which is a second derivative."""
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(places, values)(np.clip(at, places[0], places[-1])))

@@ -1,4 +1,8 @@
-"""The track as it is passed in time: the ground's frame and forces under the skis, and the skis' own motion."""
+"""The track as it is passed in time: the ground's frame and forces under the skis, and the skis' own motion.
+
+Skis follow the snow, however bumpy; the body over them keeps to the ground's smooth course: it does not nod with every
+bump. So there are two frames, that of the skis and that of the body, which differ by the bumps' pitch and roll.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..course import Track
-from ..frames import normalized
+from ..frames import matrix_from_columns, normalized, rotation_about
 from ..gravity import GRAVITY
 from ..snow import Snow
 from .ride import Ride
+
+SMOOTH_LENGTH = 6.0
+"""Standard deviation [m] of the window that smooths the ground: waves shorter than about three times this are bumps."""
+PLACES_PER_METRE = 10
+"""Places for each metre of track at which the ground is smoothed."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +30,10 @@ class Line:
     positive to the left, and its rate [rad/s]; `position` (n, 3) [m, world], `tangent`, `surface_normal` (n, 3),
     `curvature`, `normal_curvature`, `torsion` (n,) [1/m] as in `Track`; `phase`, `turn` (n,); gravity's parts (n,)
     along the track, to its left and into the snow and the air's `drag` against the motion [m/s^2].
+
+    `body_frame` (n, 3, 3) has columns along and across the skis and up from the ground's smooth course; `spin` (n, 3)
+    [rad/s] is its angular velocity and `pull` (n, 3) [m/s^2] gravity and drag less the acceleration of the skis, both in
+    its own axes; `cosine` (n,) is that of the angle between snow and smooth ground.
     """
 
     time: np.ndarray
@@ -41,6 +54,10 @@ class Line:
     gravity_left: np.ndarray
     gravity_into: np.ndarray
     drag: np.ndarray
+    body_frame: np.ndarray
+    spin: np.ndarray
+    pull: np.ndarray
+    cosine: np.ndarray
 
     @property
     def left(self) -> np.ndarray:
@@ -57,7 +74,7 @@ class TrackSpline:
 
         self.track = track
         bends = np.stack((track.curvature, track.normal_curvature, track.torsion), axis=1)
-        table = np.hstack((track.position, track.tangent, track.surface_normal, bends))
+        table = np.hstack((track.position, track.tangent, track.surface_normal, bends, smooth_normals(track)))
         self._spline = CubicSpline(track.arc_length, table)
 
     def line(self, ride: Ride, snow: Snow) -> Line:
@@ -67,6 +84,12 @@ class TrackSpline:
         normal = normalized(values[:, 6:9])
         tangent = values[:, 3:6] - np.sum(values[:, 3:6] * normal, axis=1, keepdims=True) * normal
         tangent = normalized(tangent)
+        left = np.cross(normal, tangent)
+        moved = ride.acceleration[:, None] * tangent + (ride.speed**2)[:, None] * (
+            values[:, 9:10] * left + values[:, 10:11] * normal
+        )
+        drag = snow.drag_factor * ride.speed**2
+        frame = turned_frames(tangent, normalized(values[:, 12:15]), ride.steering)
         label = np.clip(np.searchsorted(track.arc_length, ride.arc_length, side="right") - 1, 0, len(track.phase) - 1)
         return Line(
             time=ride.time,
@@ -84,7 +107,48 @@ class TrackSpline:
             phase=track.phase[label],
             turn=track.turn[label],
             gravity_along=tangent @ GRAVITY,
-            gravity_left=np.cross(normal, tangent) @ GRAVITY,
+            gravity_left=left @ GRAVITY,
             gravity_into=-(normal @ GRAVITY),
-            drag=snow.drag_factor * ride.speed**2,
+            drag=drag,
+            body_frame=frame,
+            spin=frame_spin(frame, ride.time),
+            pull=np.einsum("nij,ni->nj", frame, GRAVITY - drag[:, None] * tangent - moved),
+            cosine=np.sum(frame[..., 2] * normal, axis=1),
         )
+
+
+def turned_frames(tangent: np.ndarray, up: np.ndarray, steering: np.ndarray) -> np.ndarray:
+    """Return frames (n, 3, 3) whose columns are the direction that `steering` (n,) [rad] turns left from `tangent`
+    (n, 3) about `up` (n, 3), the left of it, and `up`.
+    """
+    across = normalized(np.cross(up, tangent))
+    return matrix_from_columns(np.cross(across, up), across, up) @ rotation_about("z", steering)
+
+
+def frame_spin(frame: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Return the angular velocity (n, 3) [rad/s] of frames (n, 3, 3) in their own axes, by central differences."""
+    rate = np.swapaxes(frame, -1, -2) @ np.gradient(frame, time, axis=0, edge_order=2)
+    turning = 0.5 * (rate - np.swapaxes(rate, -1, -2))
+    return np.stack((turning[:, 2, 1], turning[:, 0, 2], turning[:, 1, 0]), axis=1)
+
+
+def smooth_normals(track: Track) -> np.ndarray:
+    """Return the normals (n, 3) of the ground's smooth course under the track."""
+    return smoothed_along(track, track.surface_normal)
+
+
+def smoothed_along(track: Track, values: np.ndarray) -> np.ndarray:
+    """Return `values` (n, k) smoothed along the track over `SMOOTH_LENGTH`; beyond its ends they go on straight."""
+    from scipy.ndimage import gaussian_filter1d
+
+    count = max(int(np.ceil(track.length * PLACES_PER_METRE)), 2)
+    arc = np.linspace(0.0, track.length, count + 1)
+    margin = int(np.ceil(4.0 * SMOOTH_LENGTH * count / track.length))
+    steps = np.arange(1, margin + 1)
+    columns = []
+    for column in np.asarray(values).T:
+        path = np.interp(arc, track.arc_length, column)
+        first, last = path[0] - (path[1] - path[0]) * steps[::-1], path[-1] + (path[-1] - path[-2]) * steps
+        smooth = gaussian_filter1d(np.concatenate((first, path, last)), SMOOTH_LENGTH * count / track.length)
+        columns.append(np.interp(track.arc_length, arc, smooth[margin:-margin]))
+    return np.stack(columns, axis=1)

@@ -5,10 +5,10 @@ outside the stance whenever a turn changes fast. Here the offset y of the centre
 pendulum of [VP93 Eq. 1], written for a pivot under the middle of the skis that moves over any ground:
 
     y'' - (N / h + w_e^2 + w_n^2) y = g_a + D_a - p''_a + w_e' h + 2 w_e h' - w_a w_n h
-    N = h'' + w_e' y + 2 w_e y' + w_n w_a y - (w_e^2 + w_a^2) h + v^2 kappa_n - g_n
+    N = h'' + w_e' y + 2 w_e y' + w_n w_a y - (w_e^2 + w_a^2) h + p''_n - g_n
 
-in the frame of the skis (e along, a across to the left, n up) that turns with angular velocity w; h is the height over
-the snow, p'' the acceleration of the pivot, D air drag, N the snow's normal force per mass. On a plane, without
+in the body's frame (e along the skis, a across to the left, n up from the smooth ground) that turns with angular
+velocity w; h is the height over the skis, p'' their acceleration, D air drag, N the force along n per mass. On a plane, without
 skidding, only w_n = kappa v is left and a steady turn gives tan(lean) = v^2 / (g r). It has one bounded solution, which
 anticipates transitions.
 """
@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..frames import components
 from .line import Line
 
 STEEPEST = np.deg2rad(75.0)
@@ -108,18 +109,15 @@ def balanced_pendulum(line: Line, legs: Legs) -> Pendulum:
                 break
             smoothing = max(1.25 * smoothing, 0.04)
             h = _height(pivot, y, legs, smoothing)
-    return _cut(pivot, y, h)
+    return _cut(pivot, line, y, h)
 
 
 def _pivot(line: Line, legs: Legs) -> _Pivot:
-    speed, cosine, sine = line.speed, np.cos(line.steering), np.sin(line.steering)
-    along = speed * (line.torsion * cosine - line.normal_curvature * sine)
-    across = -speed * (line.normal_curvature * cosine + line.torsion * sine)
-    up = line.curvature * speed + line.steering_rate
-    pull = line.gravity_left * cosine - (line.gravity_along - line.drag) * sine
-    moved = line.curvature * speed**2 * cosine - line.acceleration * sine
-    rest = line.gravity_into + speed**2 * line.normal_curvature
-    return _Pivot(*_padded(line.time, along, across, up, pull - moved, rest, line.gravity_into, legs.rise))
+    along, across, up = components(line.spin)
+    _, side, down = components(line.pull)
+    padded = _padded(line.time, along, across, up, side, -down, line.gravity_into, legs.rise)
+    padded[-1] = _eased(padded[-1], float(padded[0][1] - padded[0][0]))
+    return _Pivot(*padded)
 
 
 def _normal(pivot: _Pivot, y: np.ndarray, h: np.ndarray) -> np.ndarray:
@@ -142,17 +140,35 @@ def _height(pivot: _Pivot, y: np.ndarray, legs: Legs, smoothing: float) -> np.nd
     return rigid * (1.0 + pivot.rise / legs.length)
 
 
-def _cut(pivot: _Pivot, y: np.ndarray, h: np.ndarray) -> Pendulum:
+def _cut(pivot: _Pivot, line: Line, y: np.ndarray, h: np.ndarray) -> Pendulum:
     """Return the pendulum without the padding."""
     time, up, along, across = pivot.time, pivot.up, pivot.along, pivot.across
     y_rate, h_rate = derivative(time, y), derivative(time, h)
     swing = derivative(time, across) * h - derivative(time, up) * y + 2.0 * (across * h_rate - up * y_rate)
     swing += along * (across * y + up * h)
+    lift = _normal(pivot, y, h) - pivot.rest  # what the body's motion over the skis adds along its up axis
     inner = slice(_PAD, -_PAD)
-    return Pendulum(*(array[inner] for array in (y, y_rate, h, h_rate, _normal(pivot, y, h), swing)))
+    y, y_rate, h, h_rate, normal, swing, lift = (
+        array[inner] for array in (y, y_rate, h, h_rate, _normal(pivot, y, h), swing, lift)
+    )
+    skis = np.cross(line.body_frame[..., 1], line.surface_normal)  # along the skis on the bumpy snow
+    swing = swing * np.sum(line.body_frame[..., 0] * skis, axis=1) + lift * np.sum(
+        line.body_frame[..., 2] * skis, axis=1
+    )
+    return Pendulum(y, y_rate, h, h_rate, normal / line.cosine, swing)
 
 
 _PAD = 320
+EASING_TIME = 0.25
+"""Time [s] in which legs that move at the end of a track come to rest beyond it."""
+
+
+def _eased(padded: np.ndarray, step: float) -> np.ndarray:
+    """Return a padded height that goes on smoothly beyond the track instead of stopping with a jerk."""
+    beyond = EASING_TIME * (1.0 - np.exp(-step * np.arange(1, _PAD + 1) / EASING_TIME))
+    inner = padded[_PAD:-_PAD]
+    first, last = (inner[1] - inner[0]) / step, (inner[-1] - inner[-2]) / step
+    return np.concatenate((inner[0] - first * beyond[::-1], inner, inner[-1] + last * beyond))
 
 
 def _padded(time: np.ndarray, *arrays: np.ndarray) -> list[np.ndarray]:

@@ -11,11 +11,11 @@ from ..course import Track, speed_to_hold
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
-from .absorption import Sink, legs_for, missing_length
+from .absorption import Sink, bump_heights, legs_for, missing_length
 from .checks import check_arrival, check_lean, check_load, check_ranges, check_reach
-from .line import Line, TrackSpline
+from .line import Line, TrackSpline, turned_frames
 from .pendulum import Pendulum, balanced_pendulum, upright
-from .pose import plan_poses, skis_frames
+from .pose import plan_poses
 from .ride import Body, SpeedControl, plan_ride
 from .stance import Stance, build_stance
 
@@ -91,12 +91,10 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         if spec.technique.inclination:
             check_lean(spec, line, pendulum, stance.height)
             check_load(spec, line, pendulum)
-        frames = skis_frames(line.tangent, line.surface_normal, line.steering)
-        com = line.position + pendulum.y[:, None] * frames[..., 1] + pendulum.h[:, None] * frames[..., 2]
+        skis, body = turned_frames(line.tangent, line.surface_normal, line.steering), line.body_frame
+        com = line.position + pendulum.y[:, None] * body[..., 1] + pendulum.h[:, None] * body[..., 2]
         angulation = _angulation(spec, line, pendulum.inclination)
-        poses = plan_poses(
-            model.skeleton, stance, frames, line.position, com, pendulum.inclination, angulation, line.steering
-        )
+        poses = plan_poses(model.skeleton, stance, skis, body, line.position, com, pendulum, angulation, line.steering)
         if not sink.deepen(line.arc_length, missing_length(model.skeleton, poses)):
             break
     check_reach(line, poses)
@@ -121,7 +119,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         ski_position=poses.ski_position,
         ski_rotation=poses.ski_rotation,
         load=pendulum.normal / STANDARD_GRAVITY,
-        ski_frame=frames,
+        ski_frame=skis,
         steering=line.steering,
     )
 
@@ -129,7 +127,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
 def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[Line, Pendulum]:
     """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
     snow, spline = Snow.of(spec.snow, spec.skier), TrackSpline(track)
-    control = speed_control(spec, track)
+    control, heights = speed_control(spec, track), bump_heights(track)
     body = Body(
         normal=-(track.surface_normal @ GRAVITY), swing=np.zeros(len(track.arc_length)), arc_length=track.arc_length
     )
@@ -140,7 +138,7 @@ def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[L
         line = spline.line(ride, snow)
         if not spec.technique.inclination:
             return line, upright(line, stance.height)
-        pendulum = balanced_pendulum(line, legs_for(spec, track, line, stance, sink))
+        pendulum = balanced_pendulum(line, legs_for(spec, track, heights, line, stance, sink))
         if before is not None and _change(before, line) < 1e-6:
             break
         before, body = line, Body(pendulum.normal, pendulum.swing, line.arc_length)

@@ -14,8 +14,9 @@ import numpy as np
 from ..body import Skeleton, centre_of_mass, forward_kinematics
 from ..body.leg_ik import LegAngles, ankle_from_ski, solve_leg
 from ..body.skeleton import SIDES
-from ..frames import matrix_from_columns, quaternion_from_matrix, rotation_about
+from ..frames import quaternion_from_matrix, rotation_about
 from ..snow import edge_lift
+from .pendulum import Pendulum
 from .stance import PELVIS_PITCH, Stance
 
 BOOT_PLAY = np.deg2rad(4.0)
@@ -25,6 +26,10 @@ SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
 PELVIS_TURN = 0.4
 SPINE_TURN = {"abdomen_z": 0.15, "chest_z": 0.20, "head_z": 0.20}
 """How far pelvis and spine turn back from skidding skis towards the direction of travel, in units of the steering."""
+CROUCH_PITCH = {"pelvis": 0.5, "abdomen_y": 0.8, "chest_y": 0.6, "head_y": -1.6}
+"""How much further forward pelvis and spine bend for each metre that the legs bend [rad/m], so that the hips can go
+back; the eyes stay ahead.
+"""
 
 ARM_RAISE, ARM_SPREAD, WRIST_TURN = 0.35, 0.35, 0.45
 """How arms follow the lean, in units of the lean: both swing towards the outside; the inside arm rises and its wrist
@@ -50,21 +55,25 @@ def plan_poses(
     skeleton: Skeleton,
     stance: Stance,
     world_from_skis: np.ndarray,
+    world_from_body: np.ndarray,
     position: np.ndarray,
     com: np.ndarray,
-    inclination: np.ndarray,
+    pendulum: Pendulum,
     angulation: np.ndarray,
     steering: np.ndarray,
 ) -> PlannedPoses:
     """Return poses whose skis lie on the track and whose centre of mass is `com` (n, 3) [m, world].
 
-    `world_from_skis` (n, 3, 3) has columns along the skis, across to the left, and up from the snow; `position` (n, 3)
-    is the middle between the skis; `inclination` (n,) [rad] is positive to the left, `angulation` (n,) is beta_a,
-    -1..0, and `steering` (n,) [rad] the skis' angle from the track, out of which the upper body turns back.
+    `world_from_skis` (n, 3, 3) has columns along the skis, across to the left, and up from the snow, `world_from_body`
+    the same for the smooth ground; `position` (n, 3) is the middle between the skis; `pendulum` leans the body,
+    `angulation` (n,) is beta_a, -1..0, and `steering` (n,) [rad] the skis' angle from the track, out of which the upper
+    body turns back.
     """
+    inclination = pendulum.inclination
     count = len(position)
     qpos = np.repeat(stance.qpos[None], count, axis=0)
-    _lean_upper_body(skeleton, qpos, world_from_skis, inclination, angulation, steering)
+    crouch = stance.height - np.hypot(pendulum.y, pendulum.h)
+    _lean_upper_body(skeleton, qpos, world_from_body, inclination, angulation, steering, crouch)
     qpos[:, :3] += com - _com(skeleton, qpos)
     edge = np.repeat(inclination[:, None], 2, axis=1)
     for _ in range(25):
@@ -102,10 +111,13 @@ def _lean_upper_body(
     inclination: np.ndarray,
     angulation: np.ndarray,
     steering: np.ndarray,
+    crouch: np.ndarray,
 ) -> None:
     pelvis_lean = (1.0 + angulation) * inclination
     pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("z", -PELVIS_TURN * steering)
-    qpos[:, 3:7] = quaternion_from_matrix(pelvis @ rotation_about("y", float(PELVIS_PITCH)))
+    qpos[:, 3:7] = quaternion_from_matrix(pelvis @ rotation_about("y", PELVIS_PITCH + CROUCH_PITCH["pelvis"] * crouch))
+    for hinge in ("abdomen_y", "chest_y", "head_y"):
+        qpos[:, skeleton.qpos_of(hinge)] += CROUCH_PITCH[hinge] * crouch
     for hinge, share in SPINE_TURN.items():
         qpos[:, skeleton.qpos_of(hinge)] -= share * steering
     for hinge, share in SPINE_SHARE.items():
@@ -137,11 +149,3 @@ def _solve_legs(
 
 def _com(skeleton: Skeleton, qpos: np.ndarray) -> np.ndarray:
     return centre_of_mass(skeleton, *forward_kinematics(skeleton, qpos))
-
-
-def skis_frames(tangent: np.ndarray, surface_normal: np.ndarray, steering: np.ndarray) -> np.ndarray:
-    """Return world_from_skis (n, 3, 3) with columns along skis turned by `steering` (n,) [rad] from the track's
-    `tangent`, across them to the left, and the surface normal.
-    """
-    track = matrix_from_columns(tangent, np.cross(surface_normal, tangent), surface_normal)
-    return track @ rotation_about("z", steering)

@@ -33,10 +33,10 @@ CONTROL_TIME = 0.7
 """Time [s] in which a speed above the wanted one is brought down."""
 LEAST_SIDE_FORCE = 1.5
 """Side force per mass [m/s^2] below which skis are turned less and less: a ski without it does not brake."""
-LAG = 0.10
+LAG = 0.06
 """Time [s] of each of three lags in which the skis follow the wanted steering angle, so that they turn smoothly."""
-FASTEST_STEERING = np.deg2rad(130.0)
-"""Most change of the wanted steering angle [rad/s]."""
+FASTEST_STEERING, FASTEST_STOP = np.deg2rad(250.0), np.deg2rad(130.0)
+"""Most change of the wanted steering angle [rad/s] in turns, and where the skis are thrown across to stop."""
 ACROSS = 0.5 * np.pi
 """Steering angle of a stop."""
 BRAKE_FROM, BRAKE_TO = np.deg2rad(74.0), np.deg2rad(89.0)
@@ -135,7 +135,7 @@ class _Rider:
                 stopped_at = arc
                 break
             target = self.steering(arc, speed, stopping)
-            most = FASTEST_STEERING * TIME_STEP
+            most = (FASTEST_STOP if stopping else FASTEST_STEERING) * TIME_STEP
             wanted += min(max(target - wanted, -most), most)
             first += TIME_STEP / LAG * (wanted - first)
             second += TIME_STEP / LAG * (first - second)

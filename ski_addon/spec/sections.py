@@ -310,7 +310,7 @@ class TechniqueSpec:
         word="unlimited",
     )
     skid_max_deg: float = number(
-        35.0, 0, 50, "deg", "Most skid", "Largest angle between skis and track when braking in turns", advanced=True
+        35.0, 0, 60, "deg", "Most skid", "Largest angle between skis and track when braking in turns", advanced=True
     )
     stop_deceleration: float = number(
         4.0, 1, 7, "m/s^2", "Stop deceleration", "How hard the skier brakes to a stop", advanced=True

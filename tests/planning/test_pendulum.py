@@ -17,9 +17,26 @@ ONES = np.ones_like(TIME)
 def line(curvature, speed, left=0.0, into=G, **more) -> Line:
     """A line of `curvature` at `speed`; whatever else a line has is zero unless given."""
     given = {"time": TIME, "curvature": curvature, "speed": speed, "gravity_left": left, "gravity_into": into, **more}
-    names = [name for name in Line.__dataclass_fields__ if name not in ("position", "tangent", "surface_normal")]
-    empty = {name: np.zeros((len(TIME), 3)) for name in ("position", "tangent", "surface_normal")}
-    return Line(**empty, **{name: given.get(name, 0.0) * ONES for name in names})
+    vectors = ("position", "tangent", "surface_normal", "body_frame", "spin", "pull")
+    flat = {name: given.get(name, 0.0) * ONES for name in Line.__dataclass_fields__ if name not in vectors}
+    v, sine, cosine = flat["speed"], np.sin(flat["steering"]), np.cos(flat["steering"])
+    kappa, hollow, torsion = flat["curvature"], flat["normal_curvature"], flat["torsion"]
+    spin = (v * (torsion * cosine - hollow * sine), -v * (hollow * cosine + torsion * sine))
+    pull = (
+        (flat["gravity_along"] - flat["acceleration"]) * cosine + (flat["gravity_left"] - kappa * v**2) * sine,
+        (flat["gravity_left"] - kappa * v**2) * cosine - (flat["gravity_along"] - flat["acceleration"]) * sine,
+        -flat["gravity_into"] - hollow * v**2,
+    )
+    level = np.broadcast_to(np.eye(3), (len(TIME), 3, 3))
+    return Line(
+        **flat | {"cosine": ONES},
+        position=np.zeros((len(TIME), 3)),
+        tangent=level[..., 0],
+        surface_normal=level[..., 2],
+        body_frame=level,
+        spin=np.stack((*spin, kappa * v + flat["steering_rate"]), axis=1),
+        pull=np.stack(pull, axis=1),
+    )
 
 
 def legs(least_load=0.25, extension=0.1, rise=0.0) -> Legs:
