@@ -42,7 +42,7 @@ HINGE_LIMITS: dict[str, HingeLimit] = {
     "thigh_x": HingeLimit(-45, 45, 130, 130),
     "thigh_z": HingeLimit(-45, 45, 80, 80),
     "shank_y": HingeLimit(2, 135, 250, 130),
-    "foot_y": HingeLimit(-38, 20, 60, 180),
+    "foot_y": HingeLimit(-42, 20, 60, 180),
     "foot_x": HingeLimit(-5, 5, 100, 100),
 }
 """Limits by hinge name without its side. The ankle's side axis is the boot's play; its torque is the shell's."""

@@ -36,6 +36,7 @@ def build_bump_track(spec: RunSpec, terrain: Terrain) -> Track:
     before = np.arange(down[0] - SPACING, start, -SPACING)[::-1]
     after = np.arange(down[-1] + SPACING, end, SPACING)
     down, left = np.concatenate((before, down, after)), np.pad(left, (len(before), len(after)), mode="edge")
+    left = left + _between_columns(spec)
     phase, turn = label_turns(np.pad(curvature, (len(before), len(after))), LEAST_BEND)
     return track_on_surface(terrain, down, left, phase, turn, spec.course.start_speed)
 
@@ -50,6 +51,14 @@ def crest_places(spec: RunSpec) -> np.ndarray:
     lengths = {"bumps": 2.0 * slope.bump_width * slope.bump_count, "moguls": slope.mogul_spacing * slope.mogul_count}
     count = max(int(lengths.get(slope.kind, _PLAIN_LENGTH) / spacing + 1e-9), 1)
     return slope.bump_start + spacing * np.arange(1, count + 1)
+
+
+def _between_columns(spec: RunSpec) -> float:
+    """Return where to the left [m] a line that turns runs down a field of moguls: between two of its columns."""
+    slope = spec.slope
+    if slope.kind != "moguls" or spec.course.turn_amplitude == 0.0:
+        return 0.0
+    return 0.5 * (slope.mogul_spacing if isinstance(slope.mogul_across, str) else slope.mogul_across)
 
 
 def _step(crests: np.ndarray) -> float:

@@ -57,7 +57,7 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
 
 
 def coasting_speed(track: Track, spec: RunSpec) -> float:
-    """Return about how fast [m/s] a skier who does not brake reaches the end of `track`, within the limits asked for."""
+    """Return about how fast [m/s] a skier who only brakes to the limits asked for reaches the end of `track`."""
     snow = Snow.of(spec.snow, spec.skier)
     along, into = track.tangent @ GRAVITY, -(track.surface_normal @ GRAVITY)
     most = 1.1 * speed_to_hold(spec)

@@ -1,8 +1,8 @@
 """Bump skiing: legs stretch in hollows and bend over crests, so that the body goes nearly straight [SG19 sec. 4.6].
 
 The paper changes the height of the centre of mass by beta_bump times that of the bump under the skis [SG19 Eq. 19],
-with beta_bump given by hand. Here the bumps are what the ground has over its own smooth course, whatever its kind, and
-the share that is absorbed is as large as the legs allow.
+with beta_bump given by hand. Here the legs' motion is the one that, within their reach, leaves the body the least
+vertical acceleration on the ground the skis pass, of whatever kind it is.
 """
 
 from __future__ import annotations
@@ -12,14 +12,22 @@ import numpy as np
 from ..body import Skeleton
 from ..body.skeleton import SIDES
 from ..course import Track
+from ..course.quadratic import solve_quadratic
+from ..gravity import GRAVITY
 from ..spec import RunSpec
-from .line import PLACES_PER_METRE, Line, smooth_normals, smoothed_along
+from .line import PLACES_PER_METRE, Line
 from .pendulum import Legs
 from .pose import PlannedPoses
 from .stance import Stance
 
 SINK_LENGTH, SINK_FACTOR = 1.2, 1.3
 """Standard deviation [m] of the way over which a skier sinks; and how much for each metre that a leg is too short."""
+KNOT_TIME, JERK_TIME = 0.03, 0.03
+"""Time [s] between the heights that are chosen; time over which the legs' accelerations are smooth."""
+SLOWEST_ABSORBED = 1.2
+"""Angular frequency [rad/s]: slower waves than this are ridden, not absorbed."""
+EVEN_GROUND = 0.05
+"""Vertical acceleration [m/s^2] of the skis below which the ground counts as even."""
 LEAST_KNEE = np.deg2rad(18.0)
 """Straightest knee of a plan: a straight leg could not be controlled."""
 TOLERANCE = 1e-3
@@ -65,30 +73,53 @@ def missing_length(skeleton: Skeleton, poses: PlannedPoses) -> np.ndarray:
     return np.maximum(length - np.sqrt(straightest), 0.0).max(axis=1)
 
 
-def legs_for(spec: RunSpec, track: Track, heights: np.ndarray, line: Line, stance: Stance, sink: Sink) -> Legs:
-    """Return what the legs do along `line`: how they absorb bumps of `heights` (n,) [m] on the track, and how far they
-    may stretch to keep a load.
-    """
-    wanted = -spec.technique.absorption * _smoothly(line.arc_length, track.arc_length, heights)
-    high, low = float(np.max(wanted, initial=0.0)), float(np.min(wanted, initial=0.0))
-    share = min(1.0, (stance.extension + stance.retraction) / max(high - low, 1e-9))
-    lower = max(share * high - stance.extension, 0.0)  # stand deeper, so that hollows can be reached
+def legs_for(spec: RunSpec, line: Line, stance: Stance, sink: Sink) -> Legs:
+    """Return what the legs do along `line`: how they absorb bumps, and how far they may stretch to keep a load."""
     return Legs(
         length=stance.height,
         extension=stance.extension,
         retraction=stance.retraction,
         least_load=spec.technique.load_min,
-        rise=share * wanted - lower - sink.at(line.arc_length),
+        rise=absorbing_rise(line, stance, spec.technique.absorption) - sink.at(line.arc_length),
     )
 
 
-def bump_heights(track: Track) -> np.ndarray:
-    """Return how high (n,) [m] the snow under the track is over the ground's smooth course.
-
-    Heights are along its normal, so that a plane has none, however the track winds on it.
+def absorbing_rise(line: Line, stance: Stance, share: float) -> np.ndarray:
+    """Return how much higher (n,) [m] than the stance a skier holds the body over the skis to absorb `share` of the
+    bumps: of all motions within what the legs can do, the one that leaves the body the least vertical acceleration.
     """
-    over = track.position - smoothed_along(track, track.position)
-    return np.sum(over * smooth_normals(track), axis=1)
+    lifted = -line.pull[:, 2] + line.body_frame[..., 2] @ GRAVITY  # the skis' acceleration along the body's up axis
+    count = max(int(np.ceil(float(line.time[-1]) / KNOT_TIME)), 6)
+    time = np.linspace(0.0, float(line.time[-1]), count + 1)
+    ground = share * np.interp(time, line.time, _blurred(lifted, 0.3 * KNOT_TIME / float(line.time[1])))
+    if float(np.max(np.abs(ground))) < EVEN_GROUND:
+        return np.zeros_like(line.time)
+    rise = _least_lift(ground, float(time[1]), -stance.retraction, stance.extension)
+    return _smoothly(line.time, time, rise)
+
+
+def _least_lift(ground: np.ndarray, step: float, low: float, high: float) -> np.ndarray:
+    """Return the heights (n,) [m], `step` [s] apart and within `low`..`high`, that answer the skis' acceleration
+    `ground` (n,) [m/s^2] best: the least sum of squares of the body's acceleration, of jerks, and of slow standing
+    high or low, which `SLOWEST_ABSORBED` gives up.
+    """
+    from scipy import sparse
+
+    n = len(ground)
+    second = sparse.diags([1.0, -2.0, 1.0], [0, 1, 2], shape=(n - 2, n))
+    third = sparse.diags([-1.0, 3.0, -3.0, 1.0], [0, 1, 2, 3], shape=(n - 3, n))
+    cost = second.T @ second + (JERK_TIME / step) ** 2 * (third.T @ third)
+    cost = cost + (SLOWEST_ABSORBED * step) ** 4 * sparse.identity(n)
+    pull = -(second.T @ (step**2 * ground[1:-1]))
+    one = sparse.csr_matrix(([1.0], ([0], [n])), shape=(1, n + 1))
+    limits = sparse.bmat(
+        [
+            [sparse.identity(n), sparse.csr_matrix(np.full((n, 1), -high))],
+            [-sparse.identity(n), sparse.csr_matrix(np.full((n, 1), low))],
+        ]
+    )
+    cost = sparse.block_diag((cost, sparse.csr_matrix((1, 1))))
+    return solve_quadratic(cost, np.append(pull, 0.0), one, np.ones(1), limits.tocsr(), 1e-9)[:n]
 
 
 def _smoothly(at: np.ndarray, places: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -96,3 +127,9 @@ def _smoothly(at: np.ndarray, places: np.ndarray, values: np.ndarray) -> np.ndar
     from scipy.interpolate import CubicSpline
 
     return np.asarray(CubicSpline(places, values)(np.clip(at, places[0], places[-1])))
+
+
+def _blurred(values: np.ndarray, width: float) -> np.ndarray:
+    from scipy.ndimage import gaussian_filter1d
+
+    return np.asarray(gaussian_filter1d(values, width, mode="nearest"))

@@ -18,6 +18,8 @@ from .ride import Ride
 
 SMOOTH_LENGTH = 6.0
 """Standard deviation [m] of the window that smooths the ground: waves shorter than about three times this are bumps."""
+NODDING = 0.3
+"""Share of the bumps' pitch and roll that the body goes along with: ankles and hips give the rest."""
 PLACES_PER_METRE = 10
 """Places for each metre of track at which the ground is smoothed."""
 
@@ -32,8 +34,8 @@ class Line:
     along the track, to its left and into the snow and the air's `drag` against the motion [m/s^2].
 
     `body_frame` (n, 3, 3) has columns along and across the skis and up from the ground's smooth course; `spin` (n, 3)
-    [rad/s] is its angular velocity and `pull` (n, 3) [m/s^2] gravity and drag less the acceleration of the skis, both in
-    its own axes; `cosine` (n,) is that of the angle between snow and smooth ground.
+    [rad/s] is its angular velocity and `pull` (n, 3) [m/s^2] gravity and drag less the acceleration of the skis, both
+    in its own axes; `cosine` (n,) is that of the angle between snow and smooth ground.
     """
 
     time: np.ndarray
@@ -74,7 +76,7 @@ class TrackSpline:
 
         self.track = track
         bends = np.stack((track.curvature, track.normal_curvature, track.torsion), axis=1)
-        table = np.hstack((track.position, track.tangent, track.surface_normal, bends, smooth_normals(track)))
+        table = np.hstack((track.position, track.tangent, track.surface_normal, bends, body_normals(track)))
         self._spline = CubicSpline(track.arc_length, table)
 
     def line(self, ride: Ride, snow: Snow) -> Line:
@@ -132,9 +134,10 @@ def frame_spin(frame: np.ndarray, time: np.ndarray) -> np.ndarray:
     return np.stack((turning[:, 2, 1], turning[:, 0, 2], turning[:, 1, 0]), axis=1)
 
 
-def smooth_normals(track: Track) -> np.ndarray:
-    """Return the normals (n, 3) of the ground's smooth course under the track."""
-    return smoothed_along(track, track.surface_normal)
+def body_normals(track: Track) -> np.ndarray:
+    """Return the up axes (n, 3) of a body on the track: those of the smooth ground, and a little of its bumps."""
+    smooth = smoothed_along(track, track.surface_normal)
+    return normalized(smooth + NODDING * (track.surface_normal - smooth))
 
 
 def smoothed_along(track: Track, values: np.ndarray) -> np.ndarray:

@@ -8,9 +8,9 @@ pendulum of [VP93 Eq. 1], written for a pivot under the middle of the skis that 
     N = h'' + w_e' y + 2 w_e y' + w_n w_a y - (w_e^2 + w_a^2) h + p''_n - g_n
 
 in the body's frame (e along the skis, a across to the left, n up from the smooth ground) that turns with angular
-velocity w; h is the height over the skis, p'' their acceleration, D air drag, N the force along n per mass. On a plane, without
-skidding, only w_n = kappa v is left and a steady turn gives tan(lean) = v^2 / (g r). It has one bounded solution, which
-anticipates transitions.
+velocity w; h is the height over the skis, p'' their acceleration, D air drag, N the force along n per mass. On a plane,
+without skidding, only w_n = kappa v is left and a steady turn gives tan(lean) = v^2 / (g r). It has one bounded
+solution, which anticipates transitions.
 """
 
 from __future__ import annotations

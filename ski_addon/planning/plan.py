@@ -11,7 +11,7 @@ from ..course import Track, speed_to_hold
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
-from .absorption import Sink, bump_heights, legs_for, missing_length
+from .absorption import Sink, legs_for, missing_length
 from .checks import check_arrival, check_lean, check_load, check_ranges, check_reach
 from .line import Line, TrackSpline, turned_frames
 from .pendulum import Pendulum, balanced_pendulum, upright
@@ -127,7 +127,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
 def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[Line, Pendulum]:
     """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
     snow, spline = Snow.of(spec.snow, spec.skier), TrackSpline(track)
-    control, heights = speed_control(spec, track), bump_heights(track)
+    control = speed_control(spec, track)
     body = Body(
         normal=-(track.surface_normal @ GRAVITY), swing=np.zeros(len(track.arc_length)), arc_length=track.arc_length
     )
@@ -138,7 +138,7 @@ def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[L
         line = spline.line(ride, snow)
         if not spec.technique.inclination:
             return line, upright(line, stance.height)
-        pendulum = balanced_pendulum(line, legs_for(spec, track, heights, line, stance, sink))
+        pendulum = balanced_pendulum(line, legs_for(spec, line, stance, sink))
         if before is not None and _change(before, line) < 1e-6:
             break
         before, body = line, Body(pendulum.normal, pendulum.swing, line.arc_length)

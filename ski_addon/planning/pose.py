@@ -26,7 +26,7 @@ SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
 PELVIS_TURN = 0.4
 SPINE_TURN = {"abdomen_z": 0.15, "chest_z": 0.20, "head_z": 0.20}
 """How far pelvis and spine turn back from skidding skis towards the direction of travel, in units of the steering."""
-CROUCH_PITCH = {"pelvis": 0.5, "abdomen_y": 0.8, "chest_y": 0.6, "head_y": -1.6}
+CROUCH_PITCH = {"pelvis": 1.0, "abdomen_y": 1.0, "chest_y": 0.8, "head_y": -2.2}
 """How much further forward pelvis and spine bend for each metre that the legs bend [rad/m], so that the hips can go
 back; the eyes stay ahead.
 """

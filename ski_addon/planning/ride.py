@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..course import Track
-from ..gravity import GRAVITY
+from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 
 TIME_STEP = 0.005
@@ -33,6 +33,8 @@ CONTROL_TIME = 0.7
 """Time [s] in which a speed above the wanted one is brought down."""
 LEAST_SIDE_FORCE = 1.5
 """Side force per mass [m/s^2] below which skis are turned less and less: a ski without it does not brake."""
+FORESIGHT = 1.5
+"""Standard deviation [m] of the window in which a skier who brakes sees the track: he does not answer single bumps."""
 LAG = 0.06
 """Time [s] of each of three lags in which the skis follow the wanted steering angle, so that they turn smoothly."""
 FASTEST_STEERING, FASTEST_STOP = np.deg2rad(250.0), np.deg2rad(130.0)
@@ -108,12 +110,17 @@ class _Rider:
         columns = (track.tangent @ GRAVITY, track.left @ GRAVITY, track.curvature)
         table = [np.interp(places, track.arc_length, column) for column in columns]
         table += [np.interp(places, body.arc_length, column) for column in (body.normal, body.swing)]
+        table += [_blurred(column, FORESIGHT / self.step) for column in table[:3]]
+        # the speed that the energy over the mean ground stands for: a crest slows, a hollow speeds up, neither matters
+        table += [2.0 * np.cumsum(table[5] - table[0]) * self.step]
         self.table = np.stack(table, axis=1).tolist()
         self.last = count - 1
         self.snow, self.control, self.track = snow, control, track
 
     def at(self, arc: float) -> list[float]:
-        """Return gravity along and to the left, curvature, normal force and swing at `arc` [m]."""
+        """Return gravity along and to the left, curvature, normal force and swing at `arc` [m]; then the first three
+        smoothed, and twice the energy per mass that bumps have taken [m^2/s^2].
+        """
         where = arc / self.step
         index = min(max(int(where), 0), self.last)
         share = min(max(where - index, 0.0), 1.0)
@@ -149,7 +156,7 @@ class _Rider:
 
     def acceleration(self, arc: float, speed: float, steering: float, stopping: bool) -> float:
         """Return v' [m/s^2]."""
-        along, left, bend, normal, swing = self.at(arc)
+        along, left, bend, normal, swing, *_ = self.at(arc)
         glide = self.snow.glide_acceleration(along, normal, speed)
         if stopping:
             x = min(max((abs(steering) - BRAKE_FROM) / (BRAKE_TO - BRAKE_FROM), 0.0), 1.0)
@@ -164,8 +171,9 @@ class _Rider:
             return self.control.stop_side * ACROSS
         if math.isinf(self.control.most):
             return 0.0
-        along, left, bend, normal, _ = self.at(arc + 3.0 * LAG * speed)
-        glide = self.snow.glide_acceleration(along, normal, speed)
+        *_, along, left, bend, _ = self.at(arc + 3.0 * LAG * speed)
+        speed = math.sqrt(max(speed * speed + self.at(arc)[-1], 0.0))
+        glide = self.snow.glide_acceleration(along, STANDARD_GRAVITY, speed)
         brake = glide + (speed - self.control.most) / CONTROL_TIME
         if brake <= 0.0:
             return 0.0
@@ -192,3 +200,9 @@ def _hermite(time: np.ndarray, values: np.ndarray, slope: np.ndarray, at: np.nda
     from scipy.interpolate import CubicHermiteSpline
 
     return np.asarray(CubicHermiteSpline(time, values, slope)(at))
+
+
+def _blurred(values: np.ndarray, width: float) -> np.ndarray:
+    from scipy.ndimage import gaussian_filter1d
+
+    return np.asarray(gaussian_filter1d(values, width, mode="nearest"))

@@ -13,7 +13,7 @@ from ..frames import quaternion_from_matrix, rotation_about
 
 PELVIS_PITCH = np.deg2rad(20.0)
 """Forward tilt of the pelvis in the stance."""
-STRAIGHTEST_KNEE, DEEPEST_KNEE = np.deg2rad(20.0), np.deg2rad(114.0)
+STRAIGHTEST_KNEE, DEEPEST_KNEE = np.deg2rad(20.0), np.deg2rad(104.0)
 """Knee bends between which the legs absorb bumps and keep their load."""
 UPPER_BODY_DEG = {
     "abdomen_y": 13.0,
