@@ -164,9 +164,7 @@ def test_interrupt_stops_all_processes_and_leaves_nothing(tmp_path):
 
 def is_running(pid: int) -> bool:
     try:
-        return (
-            Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-        )  # ended, but not yet collected
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"  # ended but not collected
     except OSError:
         return False
 
