@@ -80,13 +80,14 @@ def run_table(
     after each. A failure or an interrupt stops the processes and is raised.
     """
     with worker_pool(jobs) as pool:
-        results = run_all(pool, run_case, [(spec, table, case) for case in table.cases], progress, "runs")
+        results = run_all(pool, run_case, [(spec, table, case) for case in table.cases], progress, "pushing")
         if grow:
             known: dict[Row, dict[float, str]] = {row: {} for row in table.rows}
             for result in results:
                 known[result.case.row][result.case.force] = result.status
             rows = [(spec, table, row, known[row]) for row in table.rows]
-            results += [result for found in run_all(pool, grow_row, rows, progress, "rows grown") for result in found]
+            found = run_all(pool, grow_row, rows, progress, "growing the force by rows")
+            results += [result for row_results in found for result in row_results]
     order = {row: place for place, row in enumerate(table.rows)}
     return sorted(results, key=lambda result: (order[result.case.row], result.case.force))
 

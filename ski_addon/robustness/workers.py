@@ -30,7 +30,7 @@ def run_all(
 ) -> list[Any]:
     """Return `work(*task, stop=...)` of every task, in order; the first failure is raised.
 
-    `progress(fraction, text)` is called after each; `what` names the tasks in its text.
+    `progress(fraction, text)` is called after each; `what` says in its text what is done.
     """
     with _interrupts_held():
         futures = [pool.submit(_in_worker, work, *task) for task in tasks]
@@ -40,7 +40,7 @@ def run_all(
             error = SkiAddonError(outcome.message)
             error.exit_code = outcome.exit_code
             raise error
-        progress(done / len(futures), f"pushing: {done} of {len(futures)} {what}")
+        progress(done / len(futures), f"{what}: {done} of {len(futures)}")
     return [future.result() for future in futures]
 
 

@@ -179,7 +179,7 @@ def children_of(pid: int) -> list[int]:
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        (["--speeds=35"], 2, "the track cannot be skied at"),
+        (["--set=snow.friction=0.5"], 2, "friction stops the skier"),
         (["--forces=x"], 2, '--forces = "x" is not a number'),
         (["--jobs=0"], 2, "--jobs = 0 is outside 1..1024"),
         (["-o", "/proc/nothing"], 3, "cannot write /proc/nothing"),
