@@ -1,25 +1,16 @@
-"""Running a table of pushes in parallel processes; each makes its own plan, once for each speed."""
+"""Running pushed skiers: one, a row with growing force, or a whole table; each process plans once for each speed."""
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import functools
-import multiprocessing
-import os
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing.process import BaseProcess
-from multiprocessing.synchronize import Event
 from typing import Any
 
 import numpy as np
 
-from ..errors import Cancelled, SkiAddonError
+from ..errors import Cancelled
 from ..pipeline import start_simulation
 from ..simulation import Recording
 from ..spec import PushSpec, RunSpec
@@ -27,6 +18,7 @@ from .bound import push_bound
 from .cases import Case, PushTable, Row
 from .moments import HOLD, WATCH, Prepared, prepare
 from .recovery import measure_deviation, recovery_time
+from .workers import run_all, worker_pool
 
 RECOVERED, SURVIVED, FELL = "recovered", "survived", "fell"
 """What became of a run: back on the plan in time, still up but not back, or fallen."""
@@ -34,7 +26,6 @@ GROWTH = tuple(25.0 * i for i in range(1, 21))
 """Forces [N] that are tried, one after the other, to find the largest one survived."""
 CHUNK = 100
 """Steps between two looks at whether to stop."""
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
@@ -88,17 +79,15 @@ def run_table(
     The results are in the order of the table whatever order they were found in. `progress(fraction, text)` is called
     after each. A failure or an interrupt stops the processes and is raised.
     """
-    with _workers(jobs) as pool:
-        with _interrupts_held():
-            runs = [pool.submit(_in_worker, run_case, spec, table, case) for case in table.cases]
-        results = _collect(runs, progress, "runs")
+    with worker_pool(jobs) as pool:
+        results = run_all(pool, run_case, [(spec, table, case) for case in table.cases], progress, "pushing")
         if grow:
             known: dict[Row, dict[float, str]] = {row: {} for row in table.rows}
             for result in results:
                 known[result.case.row][result.case.force] = result.status
-            with _interrupts_held():
-                grown = [pool.submit(_in_worker, grow_row, spec, table, row, known[row]) for row in table.rows]
-            results += [result for found in _collect(grown, progress, "rows grown") for result in found]
+            rows = [(spec, table, row, known[row]) for row in table.rows]
+            found = run_all(pool, grow_row, rows, progress, "growing the force by rows")
+            results += [result for row_results in found for result in row_results]
     order = {row: place for place, row in enumerate(table.rows)}
     return sorted(results, key=lambda result: (order[result.case.row], result.case.force))
 
@@ -147,86 +136,3 @@ def _result(prepared: Prepared, table: PushTable, case: Case, recording: Recordi
 @functools.lru_cache(maxsize=2)  # cases of one speed come after each other
 def _prepared(spec: RunSpec, speed: float, duration: float, moments: tuple[str, ...]) -> Prepared:
     return prepare(spec, speed, duration, moments)
-
-
-# -- processes -------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Failure:
-    """A failure in a worker: exceptions with evidence of their own do not survive the way between processes."""
-
-    message: str
-    exit_code: int
-
-
-_stop: Event | None = None
-
-
-def _in_worker(work: Callable[..., Any], *arguments: Any) -> Any:
-    """Run `work` in a worker; return its failure instead of raising it."""
-    try:
-        return work(*arguments, stop=_stop.is_set if _stop else lambda: False)
-    except SkiAddonError as error:
-        return _Failure(str(error), error.exit_code)
-
-
-def _start_worker(stop: Event) -> None:
-    """Leave Ctrl+C to the first process, which stops all workers; end when it is gone."""
-    global _stop
-    _stop = stop
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    first = multiprocessing.parent_process()
-    if first is not None:
-        threading.Thread(target=_end_with, args=(first,), daemon=True).start()
-
-
-@contextlib.contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Keep Ctrl+C for later while processes are started: they inherit that, and are not hit before they ignore it."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _end_with(first: BaseProcess) -> None:
-    """Wait for the end of the first process, then end this one."""
-    first.join()
-    os._exit(1)
-
-
-@contextlib.contextmanager
-def _workers(jobs: int) -> Iterator[ProcessPoolExecutor]:
-    """Yield a pool of `jobs` new processes; whatever goes wrong, they are told to stop and waited for."""
-    context = multiprocessing.get_context("spawn")  # a fork would copy the threads of numpy and MuJoCo half
-    stop = context.Event()
-    unset = [name for name in _THREADS if name not in os.environ]
-    os.environ.update(dict.fromkeys(unset, "1"))  # the workers share the processors already
-    pool = ProcessPoolExecutor(jobs, context, _start_worker, (stop,))
-    try:
-        yield pool
-    except BrokenProcessPool:
-        message = "a process of the table ended unexpectedly: was there memory enough? Try fewer --jobs"
-        raise SkiAddonError(message) from None
-    finally:
-        stop.set()
-        pool.shutdown(wait=True, cancel_futures=True)
-        for name in unset:
-            os.environ.pop(name, None)
-
-
-def _collect(futures: list[Future[Any]], progress: Callable[[float, str], Any], what: str) -> list[Any]:
-    """Wait for all and return their results in order; the first failure is raised."""
-    for done, future in enumerate(as_completed(futures), start=1):
-        outcome = future.result()
-        if isinstance(outcome, _Failure):
-            error = SkiAddonError(outcome.message)
-            error.exit_code = outcome.exit_code
-            raise error
-        progress(done / len(futures), f"pushing: {done} of {len(futures)} {what}")
-    return [future.result() for future in futures]

@@ -39,7 +39,7 @@ def test_cases_of_one_speed_come_after_each_other():
         ({"forces": "nan"}, "--forces = nan is not a finite number"),
         ({"bodies": "head,pole.L"}, '--bodies = "pole.L" is not one of pelvis, abdomen'),
         ({"directions": "sideways"}, '--directions = "sideways" is not one of left, right, forward, back, up, down'),
-        ({"speeds": "0"}, "--speeds = 0 is outside 0.3..40 m/s"),
+        ({"speeds": "99"}, "--speeds = 99 is outside "),
         ({"moments": "jump"}, '--moments = "jump" is not one of turn, transition'),
         ({"duration": "0"}, "--duration = 0 is outside 0.01..10 s"),
         ({"duration": "1,2"}, '--duration = "1,2" is not a number'),

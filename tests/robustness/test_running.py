@@ -164,9 +164,7 @@ def test_interrupt_stops_all_processes_and_leaves_nothing(tmp_path):
 
 def is_running(pid: int) -> bool:
     try:
-        return (
-            Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-        )  # ended, but not yet collected
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"  # ended but not collected
     except OSError:
         return False
 
@@ -181,7 +179,7 @@ def children_of(pid: int) -> list[int]:
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        (["--speeds=35"], 2, "the track cannot be skied at"),
+        (["--set=snow.friction=0.5"], 2, "friction stops the skier"),
         (["--forces=x"], 2, '--forces = "x" is not a number'),
         (["--jobs=0"], 2, "--jobs = 0 is outside 1..1024"),
         (["-o", "/proc/nothing"], 3, "cannot write /proc/nothing"),
