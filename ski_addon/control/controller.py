@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..planning import Reference
+from ..planning import MotionPlan, Reference
 from ..snow import Snow
+from .balance import Balance
 from .dynamics import Dynamics
 from .formulation import Formulation
 from .gains import Gains
@@ -39,12 +40,20 @@ class Command:
 class Controller:
     """Computes torques and snow forces that follow a reference."""
 
-    def __init__(self, dynamics: Dynamics, reference: Reference, snow: Snow, segments: int, gains: Gains) -> None:
+    def __init__(
+        self,
+        dynamics: Dynamics,
+        reference: Reference,
+        snow: Snow,
+        segments: int,
+        gains: Gains,
+    ) -> None:
         """Set up tasks, formulation and solver for one skier on one plan."""
         self.dynamics, self.reference = dynamics, reference
         self.tasks = TaskSet(reference, gains, dynamics)
         self.formulation = Formulation(dynamics.model, snow, gains, segments)
         self.solver = OsqpSolver(self.formulation)
+        self.balance: Balance | None = None
         self._normal = reference.columns["normal"]
 
     @property
@@ -52,22 +61,33 @@ class Controller:
         """The tasks' last desired accelerations and errors."""
         return self.tasks.desired
 
+    def keep_balance(self, plan: MotionPlan, time_step: float) -> None:
+        """Re-plan from now on when the skier leaves `plan`; `step` is then called every `time_step` [s]."""
+        self.balance = Balance(self.dynamics, plan, self.tasks.motion, time_step)
+
     def step(self, progress: float) -> Command:
         """Return the command at the dynamics' present state with the skier `progress` [s] into the plan."""
         dynamics, formulation = self.dynamics, self.formulation
         sample = self.reference.at(progress)
         rate = progress_rate(self.reference, sample, dynamics)
-        desired = self.tasks.update(sample, rate)
         normal = sample[0, self._normal]
         edge_angle = np.array([edge_angle_of(dynamics.ski_rotation(ski), normal) for ski in range(2)])
-        problem = formulation.build(dynamics, desired, edge_angle, normal)
+        motion = self.tasks.motion.read(sample, rate)
+        if self.balance is not None:
+            self.balance.update(progress, rate, sample, edge_angle)
+        desired = self.tasks.follow(motion)
+        problem = formulation.build(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         solution = self.solver.solve(problem)
         x = solution.unknowns
-        torque = formulation.torques(dynamics, x)
+        limits = dynamics.model.torque_lower, dynamics.model.torque_upper
+        torque = np.clip(formulation.torques(dynamics, x), *limits)
+        snow = formulation.snow_force(x)
+        if self.balance is not None:
+            self.balance.observer.commanded(torque, snow)
         edge_normal, edge_side = formulation.edge_forces(x)
         return Command(
-            torque=np.clip(torque, dynamics.model.torque_lower, dynamics.model.torque_upper),
-            snow=formulation.snow_force(x),
+            torque=torque,
+            snow=snow,
             edge_normal=edge_normal,
             edge_side=edge_side,
             ski_force=formulation.ski_forces(x),

@@ -91,6 +91,7 @@ class Formulation:
         legs = np.isin(model.body_dof, model.leg_dof)
         posture[legs] = gains.leg_pose.weight
         self._posture = posture
+        self._legs = np.flatnonzero(legs)
         self._posture_target = np.zeros(self.accelerations)
 
     def _layout_hessian(self) -> None:
@@ -149,14 +150,21 @@ class Formulation:
 
     # -- build, each step --------------------------------------------------------------------------------------------
 
-    def build(self, dynamics: Dynamics, desired: Desired, edge_angle: np.ndarray, normal: np.ndarray) -> Problem:
+    def build(
+        self,
+        dynamics: Dynamics,
+        desired: Desired,
+        edge_angle: np.ndarray,
+        normal: np.ndarray,
+        leg_freedom: float = 1.0,
+    ) -> Problem:
         """Return the program at the present state.
 
-        `edge_angle` (2,) [rad] decides which edges bear; `normal` (3,) is the snow's. Raises nothing; the arrays of the
-        returned problem are overwritten by the next call.
+        `edge_angle` (2,) [rad] decides which edges bear; `normal` (3,) is the snow's; `leg_freedom` is a factor on the weight
+        of the legs' pose. Raises nothing; the arrays of the returned problem are overwritten by the next call.
         """
         self._build_snow(dynamics, normal)
-        self._build_cost(dynamics, desired)
+        self._build_cost(dynamics, desired, leg_freedom)
         self._build_constraints(dynamics)
         self._build_hinge_bounds(dynamics)
         self._build_snow_bounds(edge_angle)
@@ -181,7 +189,7 @@ class Formulation:
             columns = slice(ski * self.per_ski, (ski + 1) * self.per_ski)
             self.force_columns[:, columns] = dynamics.ski_jacobian[ski].T @ block
 
-    def _build_cost(self, dynamics: Dynamics, desired: Desired) -> None:
+    def _build_cost(self, dynamics: Dynamics, desired: Desired, leg_freedom: float) -> None:
         rows, target, n = self._task_rows, self._task_target, self.accelerations
         mass_rows = dynamics.inertia[:3]
         for ski in range(2):
@@ -199,14 +207,18 @@ class Formulation:
         rows *= self._task_scale[:, None]
         target *= self._task_scale
         hessian = rows.T @ rows
-        hessian.reshape(-1)[:: n + 1] += self._posture
+        posture = self._posture
+        if leg_freedom != 1.0:
+            posture = posture.copy()
+            posture[self._legs] *= leg_freedom
+        hessian.reshape(-1)[:: n + 1] += posture
         self._posture_target[3:6] = desired.pelvis
         self._posture_target[6:] = desired.joints
         np.take(hessian, self._hessian_index, out=self._hessian[: len(self._hessian_index)])
-        self._gradient[:n] = -(target @ rows) - self._posture * self._posture_target
+        self._gradient[:n] = -(target @ rows) - posture * self._posture_target
 
     def _build_constraints(self, dynamics: Dynamics) -> None:
-        n, dense, bias = self.accelerations, self._dense, dynamics.bias
+        n, dense, bias = self.accelerations, self._dense, dynamics.bias - dynamics.outside
         np.multiply(dynamics.inertia, self._row_scale, out=dense[:n, :n])
         np.multiply(self.force_columns, -self._row_scale, out=dense[:n, n:])
         np.take(dense, self._constraint_index, out=self._constraints)
@@ -250,12 +262,14 @@ class Formulation:
     def torques(self, dynamics: Dynamics, unknowns: np.ndarray) -> np.ndarray:
         """Return the hinge torques (31,) [N m] of a solution, by the equations of motion."""
         n = self.accelerations
-        return (dynamics.inertia[6:] @ unknowns[:n] + dynamics.bias[6:]) - self.snow_force(unknowns)[6:]
+        known = dynamics.bias[6:] - dynamics.outside[6:]
+        return (dynamics.inertia[6:] @ unknowns[:n] + known) - self.snow_force(unknowns)[6:]
 
     def root_residual(self, dynamics: Dynamics, unknowns: np.ndarray) -> float:
         """Return the largest error of the root's equations of motion [N or N m] at a solution."""
         n = self.accelerations
-        error = dynamics.inertia[:6] @ unknowns[:n] + dynamics.bias[:6] - self.snow_force(unknowns)[:6]
+        known = dynamics.bias[:6] - dynamics.outside[:6]
+        error = dynamics.inertia[:6] @ unknowns[:n] + known - self.snow_force(unknowns)[:6]
         return float(np.max(np.abs(error)))
 
     def edge_forces(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -44,6 +44,8 @@ class Simulation:
         self.reference = Reference(plan, model)
         self.dynamics = Dynamics(model, self.snow.drag_factor)
         self.controller = Controller(self.dynamics, self.reference, self.snow, spec.simulation.segments, Gains())
+        if spec.technique.balance == "steering" and spec.technique.inclination:
+            self.controller.keep_balance(plan, self.time_step)
         self.step_total = math.ceil(plan.duration / self.time_step)
         self.step_done = 0
         self.progress = 0.0  # [s] into the plan
