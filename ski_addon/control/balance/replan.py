@@ -27,6 +27,10 @@ LOOSE_LEGS = 0.01
 """Factor on the weight of the legs' pose while the skier is off the plan."""
 DEEPEST = 0.94
 """Most sideways offset of the centre of mass over the skis, in units of its distance from them."""
+FLATTEST, FLATTEN_PUSH = math.radians(10.0), 3.0
+"""Skis are rolled by up to the first [rad] towards flat and `BEYOND_FLAT` while a push of the second [m/s^2] or more
+tips the body over the edges that bear."""
+BEYOND_FLAT = math.radians(3.0)
 SLOWEST = 0.5
 """Least speed [m/s] by which the direction of the steered line is judged."""
 
@@ -90,6 +94,14 @@ def _fall(y: float, y_rate: float, y_acceleration: float, h: float, h_rate: floa
     return -(y_rate * y_rate + y * y_acceleration + h_rate * h_rate) / h
 
 
+def flattening(edge: float, push: float) -> float:
+    """Return the roll [rad] that brings the lifted edges of skis at `edge` [rad] down before a `push` [m/s^2]."""
+    if edge * push >= 0.0:
+        return 0.0
+    most = min(FLATTEST * min(abs(push) / FLATTEN_PUSH, 1.0), abs(edge) + BEYOND_FLAT)
+    return math.copysign(most, push)
+
+
 class Replanner:
     """Changes a `Motion` in place to the re-planned one."""
 
@@ -119,7 +131,7 @@ class Replanner:
         heading = steered_heading(steering, d)
         lean = measured_lean(steering, d, sideways, current)
         self._move_com(blend, d, lean, blend * (sideways - current))
-        self._move_skis(blend, steering, heading, lean)
+        self._move_skis(blend, steering, heading, lean, push)
         self._turn_pelvis(blend, heading, lean)
         self._free_legs(blend)
         return heading.angle
@@ -131,7 +143,7 @@ class Replanner:
         motion.velocity[com] += blend * d.y_rate * across + blend * lean.rise_rate * normal
         motion.acceleration[com] += sideways * across + blend * lean.rise_acceleration * normal
 
-    def _move_skis(self, blend: float, steering: Steering, heading: Heading, lean: Lean) -> None:
+    def _move_skis(self, blend: float, steering: Steering, heading: Heading, lean: Lean, push: float) -> None:
         motion, columns = self._motion, self._columns
         skis, place = columns["ski_position"], columns["track_position"]
         along, across, normal = (motion.value[columns[name]] for name in ("along", "across", "normal"))
@@ -149,8 +161,11 @@ class Replanner:
         about = arm @ cross.T
         arm_2 += 2.0 * w * (arm_1 @ cross.T) + w_1 * about + w * w * (about @ cross.T)
         arm_1 += w * about
-        roll, roll_rate = blend * lean.angle, blend * lean.rate
-        for ski, edge in enumerate(motion.value[columns["edge_angle"]].tolist()):
+        roll_rate = blend * lean.rate
+        edges = motion.value[columns["edge_angle"]].tolist()
+        roll = blend * lean.angle
+        roll += blend * flattening(0.5 * (edges[0] + edges[1]) + roll, push)
+        for ski, edge in enumerate(edges):
             planned, _ = lift_slope(edge, self._width)
             lift, slope = lift_slope(edge + roll, self._width)
             edge_rate = float(motion.velocity[columns["edge_angle"]][ski])

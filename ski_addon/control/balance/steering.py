@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from .regulator import Regulator
 
-TIGHTEST = 0.25
-"""Most curvature of the steered line [1/m]: turns of 4 m."""
+TIGHTEST = 0.35
+"""Most curvature of the steered line [1/m]: turns of 3 m, skidded."""
 MOST_ACCELERATION = 12.0
 """Most sideways acceleration of the skis [m/s^2]; more only where the plan has more."""
 SPARE_ACCELERATION = 3.0
