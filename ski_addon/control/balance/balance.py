@@ -51,7 +51,7 @@ class Balance:
         columns, steering = self._motion.columns, self.steering
         outside = self._dynamics.outside = self.observer.update()
         deviation = self._gauge.measure()
-        omega, wanted = self.preview.at(progress, rate)
+        omega, wanted = self.preview.at(progress, rate, steering.offset)
         push = self._sideways_push(outside, deviation)
         reach = self._reach(deviation, edge_angle)
         raw = deviation.y + deviation.y_rate / omega - wanted
@@ -100,5 +100,6 @@ class Balance:
             right += bears_right - 0.5
         left_reach = self._half_stance + self._half_width * left - EDGE_MARGIN
         right_reach = self._half_stance + self._half_width * right - EDGE_MARGIN
-        least, most = acceleration_bounds(abs(deviation.speed), deviation.turning * deviation.speed, deviation.turning)
+        speed = deviation.speed - self.steering.offset * deviation.turning
+        least, most = acceleration_bounds(abs(speed), deviation.turning * speed)
         return Reach(-right_reach, left_reach, least, most)

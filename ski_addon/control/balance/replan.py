@@ -38,7 +38,8 @@ SLOWEST = 0.5
 @dataclass(frozen=True)
 class Lean:
     """The lean off the plan `angle` [rad, left], its `rate` [rad/s], and the planned and the present height's
-    change: `rise` [m], `rise_rate` [m/s], `rise_acceleration` [m/s^2].
+    change: `rise` [m], `rise_rate` [m/s], `rise_acceleration` [m/s^2]; `sideways` [m/s^2] is what the centre of mass is
+    accelerated to the left off the plan.
     """
 
     angle: float
@@ -46,6 +47,7 @@ class Lean:
     rise: float
     rise_rate: float
     rise_acceleration: float
+    sideways: float
 
 
 @dataclass(frozen=True)
@@ -68,10 +70,11 @@ def steered_heading(steering: Steering, deviation: Deviation) -> Heading:
     return Heading(math.atan2(drift, speed), rate, acceleration)
 
 
-def measured_lean(steering: Steering, deviation: Deviation, sideways: float, planned_sideways: float) -> Lean:
-    """Return the lean over the steered line against the planned one.
+def measured_lean(steering: Steering, deviation: Deviation, push: float, planned: float, current: float) -> Lean:
+    """Return the lean over the steered line against the planned one, and how it goes on.
 
-    `sideways` and `planned_sideways` [m/s^2] are the accelerations of the centre of mass that are to come.
+    The body is a pendulum on a leg of the planned length: `push` [m/s^2] from outside, gravity and snow accelerate it.
+    `planned` and `current` [m/s^2] are the plan's sideways accelerations at the planned and at the present speed.
     """
     d = deviation
     length = math.hypot(d.planned_y, d.planned_h)
@@ -84,9 +87,17 @@ def measured_lean(steering: Steering, deviation: Deviation, sideways: float, pla
     angle = math.atan2(over, d.h) - math.atan2(d.planned_y, d.planned_h)
     rate = (over_rate * d.h - over * d.h_rate) / (over * over + d.h * d.h)
     rate -= (d.planned_y_rate * d.planned_h - d.planned_y * d.planned_h_rate) / (length * length)
-    bend = _fall(over, over_rate, sideways - steering.acceleration, height, height_rate)
-    bend -= _fall(d.planned_y, d.planned_y_rate, planned_sideways, d.planned_h, d.planned_h_rate)
-    return Lean(angle, rate, height - d.planned_h, height_rate - d.planned_h_rate, bend)
+    # sideways acceleration over the skis = that of the body in the world + the frame's part
+    square = d.turning * d.turning
+    frame = square * (d.planned_y + d.y) - d.turning * d.speed - steering.acceleration
+    planned_bend = current - d.turning * d.speed + square * d.planned_y
+    planned_fall = _fall(d.planned_y, d.planned_y_rate, planned_bend, d.planned_h, d.planned_h_rate)
+    load = d.pull * d.planned_h + _fall(over, over_rate, frame, height, height_rate) - planned_fall
+    lever = over - steering.shift
+    free = planned - d.pull * d.planned_y + push
+    sideways = (free + lever * load / height) / max(1.0 + over * lever / (height * height), 0.5)
+    fall = _fall(over, over_rate, sideways + frame, height, height_rate) - planned_fall
+    return Lean(angle, rate, height - d.planned_h, height_rate - d.planned_h_rate, fall, sideways - current)
 
 
 def _fall(y: float, y_rate: float, y_acceleration: float, h: float, h_rate: float) -> float:
@@ -124,24 +135,22 @@ class Replanner:
         `push` [m/s^2] is the sideways acceleration from outside, `planned` the plan's own at planned speed.
         """
         d, motion = deviation, self._motion
-        lead = d.y - steering.offset - steering.shift
         across = motion.value[self._columns["across"]]
         current = float(across @ motion.acceleration[self._columns["com"]])
-        sideways = planned + d.pull * lead + push
         heading = steered_heading(steering, d)
-        lean = measured_lean(steering, d, sideways, current)
-        self._move_com(blend, d, lean, blend * (sideways - current))
+        lean = measured_lean(steering, d, push, planned, current)
+        self._move_com(blend, d, lean)
         self._move_skis(blend, steering, heading, lean, push)
         self._turn_pelvis(blend, heading, lean)
         self._free_legs(blend)
         return heading.angle
 
-    def _move_com(self, blend: float, d: Deviation, lean: Lean, sideways: float) -> None:
+    def _move_com(self, blend: float, d: Deviation, lean: Lean) -> None:
         motion, com = self._motion, self._columns["com"]
         across, normal = motion.value[self._columns["across"]], motion.value[self._columns["normal"]]
         motion.value[com] += blend * d.y * across + blend * lean.rise * normal
         motion.velocity[com] += blend * d.y_rate * across + blend * lean.rise_rate * normal
-        motion.acceleration[com] += sideways * across + blend * lean.rise_acceleration * normal
+        motion.acceleration[com] += blend * lean.sideways * across + blend * lean.rise_acceleration * normal
 
     def _move_skis(self, blend: float, steering: Steering, heading: Heading, lean: Lean, push: float) -> None:
         motion, columns = self._motion, self._columns

@@ -37,11 +37,11 @@ class Reach:
     fastest: float
 
 
-def acceleration_bounds(speed: float, centripetal: float, turning: float) -> tuple[float, float]:
+def acceleration_bounds(speed: float, centripetal: float) -> tuple[float, float]:
     """Return the least and the greatest a [m/s^2] at `speed` [m/s].
 
-    `centripetal` [m/s^2] is what the planned curve itself takes, positive to the left, and `turning` [rad/s] the turn
-    of the skis in it; bounds of curvature and turning widen to what the plan has.
+    `centripetal` [m/s^2] is what the planned curve itself takes, positive to the left; the bounds widen
+    to what the plan has.
     """
     planned = abs(centripetal)
     most = max(MOST_ACCELERATION, planned + SPARE_ACCELERATION)
