@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..planning import MotionPlan, Reference
+from ..planning import Reference
 from ..snow import Snow
 from .balance import Balance
 from .dynamics import Dynamics
@@ -21,6 +21,7 @@ class Command:
     """What the controller decided at one step.
 
     `torque` (31,) [N m]; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
+    `load_moment` (2, 3) normal forces times their places from the ski's middle [N m, world];
     `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle`
     (2,) [rad] of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
     """
@@ -29,6 +30,7 @@ class Command:
     snow: np.ndarray
     edge_normal: np.ndarray
     edge_side: np.ndarray
+    load_moment: np.ndarray
     ski_force: np.ndarray
     rate: float
     sample: np.ndarray
@@ -47,23 +49,25 @@ class Controller:
         snow: Snow,
         segments: int,
         gains: Gains,
+        time_step: float,
+        *,
+        replans: bool = True,
     ) -> None:
-        """Set up tasks, formulation and solver for one skier on one plan."""
+        """Set up tasks, formulation and solver for one skier on one plan, to be asked every `time_step` [s].
+
+        With `replans` a skier who is off the plan is given a new one that leads back, else the plan is tracked always.
+        """
         self.dynamics, self.reference = dynamics, reference
         self.tasks = TaskSet(reference, gains, dynamics)
         self.formulation = Formulation(dynamics.model, snow, gains, segments)
         self.solver = OsqpSolver(self.formulation)
-        self.balance: Balance | None = None
+        self.balance = Balance(dynamics, reference, self.tasks.motion, time_step, replans=replans)
         self._normal = reference.columns["normal"]
 
     @property
     def desired(self) -> Desired:
         """The tasks' last desired accelerations and errors."""
         return self.tasks.desired
-
-    def keep_balance(self, plan: MotionPlan, time_step: float) -> None:
-        """Re-plan from now on when the skier leaves `plan`; `step` is then called every `time_step` [s]."""
-        self.balance = Balance(self.dynamics, plan, self.tasks.motion, time_step)
 
     def step(self, progress: float) -> Command:
         """Return the command at the dynamics' present state with the skier `progress` [s] into the plan."""
@@ -73,8 +77,7 @@ class Controller:
         normal = sample[0, self._normal]
         edge_angle = np.array([edge_angle_of(dynamics.ski_rotation(ski), normal) for ski in range(2)])
         motion = self.tasks.motion.read(sample, rate)
-        if self.balance is not None:
-            self.balance.update(progress, rate, sample, edge_angle)
+        self.balance.update(progress, rate, sample, edge_angle)
         desired = self.tasks.follow(motion)
         problem = formulation.build(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         solution = self.solver.solve(problem)
@@ -82,14 +85,14 @@ class Controller:
         limits = dynamics.model.torque_lower, dynamics.model.torque_upper
         torque = np.clip(formulation.torques(dynamics, x), *limits)
         snow = formulation.snow_force(x)
-        if self.balance is not None:
-            self.balance.observer.commanded(torque, snow)
+        self.balance.observer.commanded(torque, snow)
         edge_normal, edge_side = formulation.edge_forces(x)
         return Command(
             torque=torque,
             snow=snow,
             edge_normal=edge_normal,
             edge_side=edge_side,
+            load_moment=formulation.load_moments(x),
             ski_force=formulation.ski_forces(x),
             rate=rate,
             sample=sample,

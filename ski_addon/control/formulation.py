@@ -66,6 +66,7 @@ class Formulation:
         self.forces = 2 * self.per_ski
         self.unknowns = self.accelerations + self.forces
         self.rows = 6 + 2 * self.hinges + self.forces
+        self._arms = np.zeros((2, 2 * segments, 3))
         self.snow_map = np.zeros((2, 6, self.per_ski))
         self.force_columns = np.zeros((self.accelerations, self.forces))
         self._torque_scale = 1.0 / np.maximum(-model.torque_lower, model.torque_upper)
@@ -160,8 +161,8 @@ class Formulation:
     ) -> Problem:
         """Return the program at the present state.
 
-        `edge_angle` (2,) [rad] decides which edges bear; `normal` (3,) is the snow's; `leg_freedom` is a factor on the weight
-        of the legs' pose. Raises nothing; the arrays of the returned problem are overwritten by the next call.
+        `edge_angle` (2,) [rad] decides which edges bear; `normal` (3,) is the snow's; `leg_freedom` is a factor on the
+        weight of the legs' pose. Raises nothing; the arrays of the returned problem are overwritten by the next call.
         """
         self._build_snow(dynamics, normal)
         self._build_cost(dynamics, desired, leg_freedom)
@@ -175,7 +176,7 @@ class Formulation:
         segments = self.segments
         for ski in range(2):
             rotation = dynamics.ski_rotation(ski)
-            arms = self.points.reshape(-1, 3) @ rotation.T  # (2 segments, 3)
+            arms = self._arms[ski] = self.points.reshape(-1, 3) @ rotation.T  # (2 segments, 3)
             velocity = dynamics.ski_velocity[ski]
             along, across, speed = _surface_axes(rotation, velocity, normal)
             mu = self.snow.friction_coefficient(speed)
@@ -276,6 +277,11 @@ class Formulation:
         """Return normal and side force (2 skis, 2 edges) [N] of a solution; positive side forces push left."""
         forces = unknowns[self.accelerations :].reshape(2, 2, 2, self.segments).sum(axis=3) * FORCE_UNIT
         return forces[:, 0], forces[:, 1]
+
+    def load_moments(self, unknowns: np.ndarray) -> np.ndarray:
+        """Return, for each ski, its normal forces times their places from the ski's middle (2, 3) [N m, world]."""
+        forces = unknowns[self.accelerations :].reshape(2, self.per_ski)[:, : 2 * self.segments] * FORCE_UNIT
+        return np.einsum("sp,spi->si", forces, self._arms)
 
     def ski_forces(self, unknowns: np.ndarray) -> np.ndarray:
         """Return the snow's force on each ski (2, 3) [N, world]."""

@@ -107,15 +107,15 @@ class TaskSet:
         dynamics, gains, desired = self.dynamics, self.gains, self.desired
         start = self._columns["ski_position"].start + 3 * ski
         place, turn = slice(start, start + 3), slice(3 * ski, 3 * ski + 3)
-        offset, rotation_error = desired.ski_offset[ski], desired.ski_turn[ski]
+        offset, turn_error = desired.ski_offset[ski], desired.ski_turn[ski]
         np.subtract(value[place], dynamics.ski_position(ski), out=offset)
         current = dynamics.xquat[dynamics.model.ski_body[ski]].tolist()
-        rotation_error[:] = _rotation_error(quaternions[4 * ski : 4 * ski + 4], current)
+        turn_error[:] = rotation_error(quaternions[4 * ski : 4 * ski + 4], current)
         moving = dynamics.ski_velocity[ski]
         linear = gains.ski.kp * offset + gains.ski.kd * (velocity[place] - moving[:3]) + acceleration[place]
         axes = desired.ski_axes[ski]
         axes[:] = dynamics.ski_rotation(ski)
-        error, slip = rotation_error @ axes, (spin[turn] - moving[3:]) @ axes
+        error, slip = turn_error @ axes, (spin[turn] - moving[3:]) @ axes
         desired.ski[ski, :3] = linear
         desired.ski[ski, 3:] = gains.ski.kp * error + gains.ski.kd * slip + spin_rate[turn] @ axes
         desired.ski[ski, 3] += (gains.edging.kp - gains.ski.kp) * error[0] + (gains.edging.kd - gains.ski.kd) * slip[0]
@@ -137,7 +137,7 @@ class TaskSet:
 
     def _pelvis(self, spin: np.ndarray, spin_rate: np.ndarray, quaternion: list[float]) -> None:
         dynamics, gain = self.dynamics, self.gains.pelvis
-        error = np.array(_rotation_error(quaternion, dynamics.xquat[1].tolist()))
+        error = np.array(rotation_error(quaternion, dynamics.xquat[1].tolist()))
         rotation = dynamics.root_rotation
         # the root's angular velocity and acceleration are in its own axes
         self.desired.pelvis[:] = (
@@ -153,7 +153,7 @@ class TaskSet:
         self.desired.angular_momentum_rate[:] = self.gains.angular_momentum.kd * wanted
 
 
-def _rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:
+def rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:
     """Return the world rotation vector [rad] that turns `current` into `target`, a quaternion of any length."""
     tw, tx, ty, tz = target
     cw, cx, cy, cz = current

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ...planning import MotionPlan
+from ...planning import Reference
 from ...snow import edge_bearing
 from ..dynamics import Dynamics
 from ..motion import Motion
@@ -28,14 +28,18 @@ EDGE_MARGIN = 0.015
 class Balance:
     """Re-plans the near future when the skier is off the plan.
 
-    After `update`: `blend` 0..1 (0: the plan is followed as it is), `margin` [m] the capture margin, `push` (3,) [N,
-    world] the force from outside as felt, and `steering` with the line of the skis.
+    After `update`: `replanned`, whether the motion was changed, and how far, `blend` 0..1; `margin` [m] the capture
+    margin, `divergent` [m] the divergent component off what the plan asks, `push` (3,) [N, world] the force from outside
+    as felt, and `steering` with the line of the skis.
     """
 
-    def __init__(self, dynamics: Dynamics, plan: MotionPlan, motion: Motion, time_step: float) -> None:
-        """Set up for one skier on one plan, called every `time_step` [s]."""
+    def __init__(
+        self, dynamics: Dynamics, reference: Reference, motion: Motion, time_step: float, *, replans: bool
+    ) -> None:
+        """Set up for one skier on one reference, called every `time_step` [s]; without `replans` it only measures."""
+        self._replans = replans
         self._dynamics, self._motion = dynamics, motion
-        self.preview = Preview(plan)
+        self.preview = Preview(reference)
         self.observer = DisturbanceObserver(dynamics, time_step)
         self.steering = Steering(Regulator(), time_step)
         self._gauge = DeviationGauge(motion, dynamics)
@@ -43,26 +47,31 @@ class Balance:
         skeleton = dynamics.model.skeleton
         self._half_stance, self._half_width = 0.5 * skeleton.stance_width, 0.5 * skeleton.ski_width
         self.blend = self.margin = 0.0
+        self.replanned = False
         self.push = np.zeros(3)
         self.divergent = 0.0
 
     def update(self, progress: float, rate: float, sample: np.ndarray, edge_angle: np.ndarray) -> None:
         """Measure, decide, and change the motion where it must be. `edge_angle` (2,) [rad] of the skis as they are."""
         columns, steering = self._motion.columns, self.steering
-        outside = self._dynamics.outside = self.observer.update()
+        outside = self.observer.update()
         deviation = self._gauge.measure()
         omega, wanted = self.preview.at(progress, rate, steering.offset)
         push = self._sideways_push(outside, deviation)
         reach = self._reach(deviation, edge_angle)
         raw = deviation.y + deviation.y_rate / omega - wanted
         expected = raw + PUSH_LASTS * push / omega
+        self.margin = steering.capture_margin(raw, omega, reach)
+        self.divergent = raw
+        if not self._replans:
+            return
+        self._dynamics.outside = outside
         off = math.sqrt(raw * raw + steering.offset * steering.offset + (steering.rate / omega) ** 2)
         x = min(max((off - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0), 1.0)
         self.blend = x * x * (3.0 - 2.0 * x)
         steering.update(self.blend * expected, omega, reach)
-        self.margin = steering.capture_margin(raw, omega, reach)
-        self.divergent = raw
-        if self.blend > 0.0 or abs(steering.offset) > 1e-6:
+        self.replanned = self.blend > 0.0 or abs(steering.offset) > 1e-9
+        if self.replanned:
             planned = float(self._motion.value[columns["across"]] @ sample[2, columns["com"]])
             self._replanner.apply(self.blend, steering, deviation, push, planned)
         steering.advance()
@@ -101,5 +110,6 @@ class Balance:
         left_reach = self._half_stance + self._half_width * left - EDGE_MARGIN
         right_reach = self._half_stance + self._half_width * right - EDGE_MARGIN
         speed = deviation.speed - self.steering.offset * deviation.turning
-        least, most = acceleration_bounds(abs(speed), deviation.turning * speed)
+        centripetal = deviation.centripetal - self.steering.offset * deviation.turning * deviation.turning
+        least, most = acceleration_bounds(abs(speed), centripetal)
         return Reach(-right_reach, left_reach, least, most)

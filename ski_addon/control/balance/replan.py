@@ -70,11 +70,11 @@ def steered_heading(steering: Steering, deviation: Deviation) -> Heading:
     return Heading(math.atan2(drift, speed), rate, acceleration)
 
 
-def measured_lean(steering: Steering, deviation: Deviation, push: float, planned: float, current: float) -> Lean:
+def measured_lean(steering: Steering, deviation: Deviation, push: float, planned: float) -> Lean:
     """Return the lean over the steered line against the planned one, and how it goes on.
 
     The body is a pendulum on a leg of the planned length: `push` [m/s^2] from outside, gravity and snow accelerate it.
-    `planned` and `current` [m/s^2] are the plan's sideways accelerations at the planned and at the present speed.
+    `planned` [m/s^2] is the plan's sideways acceleration at the planned speed.
     """
     d = deviation
     length = math.hypot(d.planned_y, d.planned_h)
@@ -89,15 +89,15 @@ def measured_lean(steering: Steering, deviation: Deviation, push: float, planned
     rate -= (d.planned_y_rate * d.planned_h - d.planned_y * d.planned_h_rate) / (length * length)
     # sideways acceleration over the skis = that of the body in the world + the frame's part
     square = d.turning * d.turning
-    frame = square * (d.planned_y + d.y) - d.turning * d.speed - steering.acceleration
-    planned_bend = current - d.turning * d.speed + square * d.planned_y
+    frame = square * (d.planned_y + d.y) - d.centripetal - steering.acceleration
+    planned_bend = d.sideways - d.centripetal + square * d.planned_y
     planned_fall = _fall(d.planned_y, d.planned_y_rate, planned_bend, d.planned_h, d.planned_h_rate)
     load = d.pull * d.planned_h + _fall(over, over_rate, frame, height, height_rate) - planned_fall
     lever = over - steering.shift
     free = planned - d.pull * d.planned_y + push
     sideways = (free + lever * load / height) / max(1.0 + over * lever / (height * height), 0.5)
     fall = _fall(over, over_rate, sideways + frame, height, height_rate) - planned_fall
-    return Lean(angle, rate, height - d.planned_h, height_rate - d.planned_h_rate, fall, sideways - current)
+    return Lean(angle, rate, height - d.planned_h, height_rate - d.planned_h_rate, fall, sideways - d.sideways)
 
 
 def _fall(y: float, y_rate: float, y_acceleration: float, h: float, h_rate: float) -> float:
@@ -134,11 +134,9 @@ class Replanner:
 
         `push` [m/s^2] is the sideways acceleration from outside, `planned` the plan's own at planned speed.
         """
-        d, motion = deviation, self._motion
-        across = motion.value[self._columns["across"]]
-        current = float(across @ motion.acceleration[self._columns["com"]])
+        d = deviation
         heading = steered_heading(steering, d)
-        lean = measured_lean(steering, d, push, planned, current)
+        lean = measured_lean(steering, d, push, planned)
         self._move_com(blend, d, lean)
         self._move_skis(blend, steering, heading, lean, push)
         self._turn_pelvis(blend, heading, lean)
