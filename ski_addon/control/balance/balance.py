@@ -57,7 +57,7 @@ class Balance:
         outside = self.observer.update()
         deviation = self._gauge.measure()
         omega, wanted = self.preview.at(progress, rate, steering.offset)
-        push = self._sideways_push(outside, deviation)
+        push, tipping = self._felt_push(outside, deviation)
         reach = self._reach(deviation, edge_angle)
         raw = deviation.y + deviation.y_rate / omega - wanted
         expected = raw + PUSH_LASTS * push / omega
@@ -73,11 +73,12 @@ class Balance:
         self.replanned = self.blend > 0.0 or abs(steering.offset) > 1e-9
         if self.replanned:
             planned = float(self._motion.value[columns["across"]] @ sample[2, columns["com"]])
-            self._replanner.apply(self.blend, steering, deviation, push, planned)
+            self._replanner.apply(self.blend, steering, deviation, planned, push, tipping)
         steering.advance()
 
-    def _sideways_push(self, outside: np.ndarray, deviation: Deviation) -> float:
-        """Return the sideways acceleration [m/s^2] that a push from outside gives the pendulum.
+    def _felt_push(self, outside: np.ndarray, deviation: Deviation) -> tuple[float, float]:
+        """Return the sideways acceleration [m/s^2] that a push from outside gives the pendulum, and the one by which it
+        turns the body over, both positive to the left.
 
         A push below the centre of mass also turns the body the other way; what the snow takes by that is left out of
         account. Above it the body is let turn.
@@ -96,10 +97,11 @@ class Balance:
         )
         mass = dynamics.model.mass
         straight = float(motion.value[motion.columns["across"]] @ outside[:3]) / mass
-        turned = straight - rolling / (mass * max(deviation.h, 0.2))
-        if straight * turned <= 0.0:
-            return 0.0
-        return turned if abs(turned) < abs(straight) else straight
+        tipping = -rolling / (mass * max(deviation.h, 0.2))
+        whole = straight + tipping
+        if straight * whole <= 0.0:
+            return 0.0, tipping
+        return (whole if abs(whole) < abs(straight) else straight), tipping
 
     def _reach(self, deviation: Deviation, edge_angle: np.ndarray) -> Reach:
         left = right = 0.0

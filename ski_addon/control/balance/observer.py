@@ -14,7 +14,7 @@ import numpy as np
 
 from ..dynamics import Dynamics
 
-SMOOTHING_TIME = 0.02
+SMOOTHING_TIME = 0.005
 """Time constant of the filter [s]."""
 
 

@@ -27,9 +27,9 @@ LOOSE_LEGS = 0.01
 """Factor on the weight of the legs' pose while the skier is off the plan."""
 DEEPEST = 0.94
 """Most sideways offset of the centre of mass over the skis, in units of its distance from them."""
-FLATTEST, FLATTEN_PUSH = math.radians(10.0), 3.0
-"""Skis are rolled by up to the first [rad] towards flat and `BEYOND_FLAT` while a push of the second [m/s^2] or more
-tips the body over the edges that bear."""
+FLATTEST, FLATTEN_PUSH = math.radians(10.0), 2.0
+"""Skis are rolled by up to the first [rad] towards flat, and `BEYOND_FLAT`, before a push that turns the body over the
+edges that bear by the second [m/s^2] or more: then the other edges hold."""
 BEYOND_FLAT = math.radians(3.0)
 SLOWEST = 0.5
 """Least speed [m/s] by which the direction of the steered line is judged."""
@@ -105,12 +105,12 @@ def _fall(y: float, y_rate: float, y_acceleration: float, h: float, h_rate: floa
     return -(y_rate * y_rate + y * y_acceleration + h_rate * h_rate) / h
 
 
-def flattening(edge: float, push: float) -> float:
-    """Return the roll [rad] that brings the lifted edges of skis at `edge` [rad] down before a `push` [m/s^2]."""
-    if edge * push >= 0.0:
+def flattening(edge: float, tipping: float) -> float:
+    """Return the roll [rad] that brings the lifted edges of skis at `edge` [rad] down before `tipping` [m/s^2]."""
+    if edge * tipping >= 0.0:
         return 0.0
-    most = min(FLATTEST * min(abs(push) / FLATTEN_PUSH, 1.0), abs(edge) + BEYOND_FLAT)
-    return math.copysign(most, push)
+    most = min(FLATTEST * min(abs(tipping) / FLATTEN_PUSH, 1.0), abs(edge) + BEYOND_FLAT)
+    return math.copysign(most, tipping)
 
 
 class Replanner:
@@ -129,19 +129,21 @@ class Replanner:
         self._leg_velocity = 6 + hinge
         self._width = model.skeleton.ski_width
 
-    def apply(self, blend: float, steering: Steering, deviation: Deviation, push: float, planned: float) -> float:
-        """Re-plan by `blend` (0..1) and return the skis' turn off the plan [rad].
+    def apply(
+        self, blend: float, steering: Steering, deviation: Deviation, planned: float, push: float, tipping: float
+    ) -> None:
+        """Re-plan by `blend` (0..1).
 
-        `push` [m/s^2] is the sideways acceleration from outside, `planned` the plan's own at planned speed.
+        `planned` [m/s^2] is the plan's sideways acceleration at planned speed; `push` the one from outside and `tipping`
+        the one by which that turns the body over.
         """
         d = deviation
         heading = steered_heading(steering, d)
         lean = measured_lean(steering, d, push, planned)
         self._move_com(blend, d, lean)
-        self._move_skis(blend, steering, heading, lean, push)
+        self._move_skis(blend, steering, heading, lean, tipping)
         self._turn_pelvis(blend, heading, lean)
         self._free_legs(blend)
-        return heading.angle
 
     def _move_com(self, blend: float, d: Deviation, lean: Lean) -> None:
         motion, com = self._motion, self._columns["com"]
@@ -150,7 +152,7 @@ class Replanner:
         motion.velocity[com] += blend * d.y_rate * across + blend * lean.rise_rate * normal
         motion.acceleration[com] += blend * lean.sideways * across + blend * lean.rise_acceleration * normal
 
-    def _move_skis(self, blend: float, steering: Steering, heading: Heading, lean: Lean, push: float) -> None:
+    def _move_skis(self, blend: float, steering: Steering, heading: Heading, lean: Lean, tipping: float) -> None:
         motion, columns = self._motion, self._columns
         skis, place = columns["ski_position"], columns["track_position"]
         along, across, normal = (motion.value[columns[name]] for name in ("along", "across", "normal"))
@@ -171,7 +173,7 @@ class Replanner:
         roll_rate = blend * lean.rate
         edges = motion.value[columns["edge_angle"]].tolist()
         roll = blend * lean.angle
-        roll += blend * flattening(0.5 * (edges[0] + edges[1]) + roll, push)
+        roll += blend * flattening(0.5 * (edges[0] + edges[1]) + roll, tipping)
         for ski, edge in enumerate(edges):
             planned, _ = lift_slope(edge, self._width)
             lift, slope = lift_slope(edge + roll, self._width)
