@@ -5,7 +5,7 @@ from .dynamics import Dynamics
 from .formulation import Formulation, Problem
 from .gains import Gains, TaskGain
 from .solver import OsqpSolver, Solution
-from .tasks import TaskSet, progress_rate
+from .tasks import TaskSet, progress_rate, rotation_error
 
 __all__ = [
     "Command",
@@ -19,4 +19,5 @@ __all__ = [
     "TaskGain",
     "TaskSet",
     "progress_rate",
+    "rotation_error",
 ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..planning import Reference
 from ..snow import Snow
+from .balance import Balance
 from .dynamics import Dynamics
 from .formulation import Formulation
 from .gains import Gains
@@ -20,6 +21,7 @@ class Command:
     """What the controller decided at one step.
 
     `torque` (31,) [N m]; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
+    `load_moment` (2, 3) normal forces times their places from the ski's middle [N m, world];
     `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle`
     (2,) [rad] of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
     """
@@ -28,6 +30,7 @@ class Command:
     snow: np.ndarray
     edge_normal: np.ndarray
     edge_side: np.ndarray
+    load_moment: np.ndarray
     ski_force: np.ndarray
     rate: float
     sample: np.ndarray
@@ -39,12 +42,26 @@ class Command:
 class Controller:
     """Computes torques and snow forces that follow a reference."""
 
-    def __init__(self, dynamics: Dynamics, reference: Reference, snow: Snow, segments: int, gains: Gains) -> None:
-        """Set up tasks, formulation and solver for one skier on one plan."""
+    def __init__(
+        self,
+        dynamics: Dynamics,
+        reference: Reference,
+        snow: Snow,
+        segments: int,
+        gains: Gains,
+        time_step: float,
+        *,
+        replans: bool = True,
+    ) -> None:
+        """Set up tasks, formulation and solver for one skier on one plan, to be asked every `time_step` [s].
+
+        With `replans` a skier who is off the plan is given a new one that leads back, else the plan is tracked always.
+        """
         self.dynamics, self.reference = dynamics, reference
         self.tasks = TaskSet(reference, gains, dynamics)
         self.formulation = Formulation(dynamics.model, snow, gains, segments)
         self.solver = OsqpSolver(self.formulation)
+        self.balance = Balance(dynamics, reference, self.tasks.motion, time_step, replans=replans)
         self._normal = reference.columns["normal"]
 
     @property
@@ -57,19 +74,25 @@ class Controller:
         dynamics, formulation = self.dynamics, self.formulation
         sample = self.reference.at(progress)
         rate = progress_rate(self.reference, sample, dynamics)
-        desired = self.tasks.update(sample, rate)
         normal = sample[0, self._normal]
         edge_angle = np.array([edge_angle_of(dynamics.ski_rotation(ski), normal) for ski in range(2)])
-        problem = formulation.build(dynamics, desired, edge_angle, normal)
+        motion = self.tasks.motion.read(sample, rate)
+        self.balance.update(progress, rate, sample, edge_angle)
+        desired = self.tasks.follow(motion)
+        problem = formulation.build(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         solution = self.solver.solve(problem)
         x = solution.unknowns
-        torque = formulation.torques(dynamics, x)
+        limits = dynamics.model.torque_lower, dynamics.model.torque_upper
+        torque = np.clip(formulation.torques(dynamics, x), *limits)
+        snow = formulation.snow_force(x)
+        self.balance.observer.commanded(torque, snow)
         edge_normal, edge_side = formulation.edge_forces(x)
         return Command(
-            torque=np.clip(torque, dynamics.model.torque_lower, dynamics.model.torque_upper),
-            snow=formulation.snow_force(x),
+            torque=torque,
+            snow=snow,
             edge_normal=edge_normal,
             edge_side=edge_side,
+            load_moment=formulation.load_moments(x),
             ski_force=formulation.ski_forces(x),
             rate=rate,
             sample=sample,

@@ -23,7 +23,8 @@ class Dynamics:
     """Dynamics at the present state of `data`; arrays are overwritten by every `update`.
 
     `inertia` (37, 37) and `bias` (37,) after elimination of the poles (bias includes gravity and -`applied`);
-    `applied` (nv,) generalised air drag;
+    `applied` (nv,) generalised air drag; `outside` (37,) a generalised force from outside as felt, which the controller
+    reckons with and forward dynamics does not;
     `ski_jacobian` (2, 6, 37) and `ski_bias` (2, 6) of the ski centres, linear then angular, world axes;
     `ski_velocity` (2, 6); `com`, `com_velocity` (3,); `momentum_matrix` (3, 37), `momentum_bias`, `momentum` (3,).
     """
@@ -50,6 +51,7 @@ class Dynamics:
         self.inertia = np.zeros((nb, nb))
         self.bias = np.zeros(nb)
         self.applied = np.zeros(nv)
+        self.outside = np.zeros(nb)
         self._bp_block = np.zeros((nb, len(pole)))
         self._pp_block = np.zeros((len(pole), len(pole)))
         self._pole_coupling = np.zeros((len(pole), nb))

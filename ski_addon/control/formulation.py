@@ -66,6 +66,7 @@ class Formulation:
         self.forces = 2 * self.per_ski
         self.unknowns = self.accelerations + self.forces
         self.rows = 6 + 2 * self.hinges + self.forces
+        self._arms = np.zeros((2, 2 * segments, 3))
         self.snow_map = np.zeros((2, 6, self.per_ski))
         self.force_columns = np.zeros((self.accelerations, self.forces))
         self._torque_scale = 1.0 / np.maximum(-model.torque_lower, model.torque_upper)
@@ -91,6 +92,7 @@ class Formulation:
         legs = np.isin(model.body_dof, model.leg_dof)
         posture[legs] = gains.leg_pose.weight
         self._posture = posture
+        self._legs = np.flatnonzero(legs)
         self._posture_target = np.zeros(self.accelerations)
 
     def _layout_hessian(self) -> None:
@@ -149,14 +151,21 @@ class Formulation:
 
     # -- build, each step --------------------------------------------------------------------------------------------
 
-    def build(self, dynamics: Dynamics, desired: Desired, edge_angle: np.ndarray, normal: np.ndarray) -> Problem:
+    def build(
+        self,
+        dynamics: Dynamics,
+        desired: Desired,
+        edge_angle: np.ndarray,
+        normal: np.ndarray,
+        leg_freedom: float = 1.0,
+    ) -> Problem:
         """Return the program at the present state.
 
-        `edge_angle` (2,) [rad] decides which edges bear; `normal` (3,) is the snow's. Raises nothing; the arrays of the
-        returned problem are overwritten by the next call.
+        `edge_angle` (2,) [rad] decides which edges bear; `normal` (3,) is the snow's; `leg_freedom` is a factor on the
+        weight of the legs' pose. Raises nothing; the arrays of the returned problem are overwritten by the next call.
         """
         self._build_snow(dynamics, normal)
-        self._build_cost(dynamics, desired)
+        self._build_cost(dynamics, desired, leg_freedom)
         self._build_constraints(dynamics)
         self._build_hinge_bounds(dynamics)
         self._build_snow_bounds(edge_angle)
@@ -167,7 +176,7 @@ class Formulation:
         segments = self.segments
         for ski in range(2):
             rotation = dynamics.ski_rotation(ski)
-            arms = self.points.reshape(-1, 3) @ rotation.T  # (2 segments, 3)
+            arms = self._arms[ski] = self.points.reshape(-1, 3) @ rotation.T  # (2 segments, 3)
             velocity = dynamics.ski_velocity[ski]
             along, across, speed = _surface_axes(rotation, velocity, normal)
             mu = self.snow.friction_coefficient(speed)
@@ -181,7 +190,7 @@ class Formulation:
             columns = slice(ski * self.per_ski, (ski + 1) * self.per_ski)
             self.force_columns[:, columns] = dynamics.ski_jacobian[ski].T @ block
 
-    def _build_cost(self, dynamics: Dynamics, desired: Desired) -> None:
+    def _build_cost(self, dynamics: Dynamics, desired: Desired, leg_freedom: float) -> None:
         rows, target, n = self._task_rows, self._task_target, self.accelerations
         mass_rows = dynamics.inertia[:3]
         for ski in range(2):
@@ -199,14 +208,18 @@ class Formulation:
         rows *= self._task_scale[:, None]
         target *= self._task_scale
         hessian = rows.T @ rows
-        hessian.reshape(-1)[:: n + 1] += self._posture
+        posture = self._posture
+        if leg_freedom != 1.0:
+            posture = posture.copy()
+            posture[self._legs] *= leg_freedom
+        hessian.reshape(-1)[:: n + 1] += posture
         self._posture_target[3:6] = desired.pelvis
         self._posture_target[6:] = desired.joints
         np.take(hessian, self._hessian_index, out=self._hessian[: len(self._hessian_index)])
-        self._gradient[:n] = -(target @ rows) - self._posture * self._posture_target
+        self._gradient[:n] = -(target @ rows) - posture * self._posture_target
 
     def _build_constraints(self, dynamics: Dynamics) -> None:
-        n, dense, bias = self.accelerations, self._dense, dynamics.bias
+        n, dense, bias = self.accelerations, self._dense, dynamics.bias - dynamics.outside
         np.multiply(dynamics.inertia, self._row_scale, out=dense[:n, :n])
         np.multiply(self.force_columns, -self._row_scale, out=dense[:n, n:])
         np.take(dense, self._constraint_index, out=self._constraints)
@@ -250,18 +263,25 @@ class Formulation:
     def torques(self, dynamics: Dynamics, unknowns: np.ndarray) -> np.ndarray:
         """Return the hinge torques (31,) [N m] of a solution, by the equations of motion."""
         n = self.accelerations
-        return (dynamics.inertia[6:] @ unknowns[:n] + dynamics.bias[6:]) - self.snow_force(unknowns)[6:]
+        known = dynamics.bias[6:] - dynamics.outside[6:]
+        return (dynamics.inertia[6:] @ unknowns[:n] + known) - self.snow_force(unknowns)[6:]
 
     def root_residual(self, dynamics: Dynamics, unknowns: np.ndarray) -> float:
         """Return the largest error of the root's equations of motion [N or N m] at a solution."""
         n = self.accelerations
-        error = dynamics.inertia[:6] @ unknowns[:n] + dynamics.bias[:6] - self.snow_force(unknowns)[:6]
+        known = dynamics.bias[:6] - dynamics.outside[:6]
+        error = dynamics.inertia[:6] @ unknowns[:n] + known - self.snow_force(unknowns)[:6]
         return float(np.max(np.abs(error)))
 
     def edge_forces(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return normal and side force (2 skis, 2 edges) [N] of a solution; positive side forces push left."""
         forces = unknowns[self.accelerations :].reshape(2, 2, 2, self.segments).sum(axis=3) * FORCE_UNIT
         return forces[:, 0], forces[:, 1]
+
+    def load_moments(self, unknowns: np.ndarray) -> np.ndarray:
+        """Return, for each ski, its normal forces times their places from the ski's middle (2, 3) [N m, world]."""
+        forces = unknowns[self.accelerations :].reshape(2, self.per_ski)[:, : 2 * self.segments] * FORCE_UNIT
+        return np.einsum("sp,spi->si", forces, self._arms)
 
     def ski_forces(self, unknowns: np.ndarray) -> np.ndarray:
         """Return the snow's force on each ski (2, 3) [N, world]."""

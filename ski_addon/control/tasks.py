@@ -15,6 +15,7 @@ import numpy as np
 from ..planning import Reference
 from .dynamics import Dynamics
 from .gains import Gains
+from .motion import Motion
 
 PROGRESS_PULL = 10.0
 """Rate [1/s] at which progress is drawn to where the centre of mass is."""
@@ -55,9 +56,11 @@ def progress_rate(reference: Reference, sample: np.ndarray, dynamics: Dynamics) 
     """
     columns = reference.columns
     along = sample[0, columns["along"]]
-    behind = float(along @ (dynamics.com - sample[0, columns["com"]]))
+    off = dynamics.com - sample[0, columns["com"]]
+    behind = float(along @ off)
     speed = float(along @ dynamics.com_velocity) + PROGRESS_PULL * behind
-    planned = float(along @ sample[1, columns["com"]])
+    # whoever is off to the inside of a turn passes the plan's places sooner
+    planned = float(along @ sample[1, columns["com"]]) - float(off @ sample[1, columns["along"]])
     straight = float(along @ sample[0, columns["tangent"]]) ** 4  # 0 for skis across the track
     rate = 1.0 + straight * (speed - planned) * planned / (planned * planned + CREEP * CREEP)
     return min(max(rate, 0.0), FASTEST_RATE)
@@ -70,27 +73,26 @@ class TaskSet:
         """Bind to the reference's columns and the dynamics whose state is tracked."""
         self.reference, self.gains, self.dynamics = reference, gains, dynamics
         self.desired = Desired()
+        self.motion = Motion(reference)
         self._columns = reference.columns
         self._joint_address = dynamics.model.actuated_qpos
         self._reference_velocity = np.zeros(len(dynamics.model.body_dof))
 
     def update(self, sample: np.ndarray, rate: float) -> Desired:
         """Return the desired accelerations at reference `sample` (3, width) and progress `rate`."""
-        columns, desired = self._columns, self.desired
-        value, slope, bend = sample
-        velocity = slope * rate
-        acceleration = bend * (rate * rate)
-        turning = columns["turning"]
-        spin = value[turning] * rate
-        spin_rate = slope[turning] * (rate * rate)
-        quaternions = value[columns["quaternion"]].tolist()
+        return self.follow(self.motion.read(sample, rate))
+
+    def follow(self, motion: Motion) -> Desired:
+        """Return the desired accelerations that follow `motion`."""
+        value, velocity, acceleration = motion.value, motion.velocity, motion.acceleration
+        quaternions = value[self._columns["quaternion"]].tolist()
         for ski in range(2):
-            self._ski(ski, value, velocity, acceleration, spin, spin_rate, quaternions)
+            self._ski(ski, value, velocity, acceleration, motion.spin, motion.spin_rate, quaternions)
         self._com(value, velocity, acceleration)
         self._pose(value, velocity, acceleration)
-        self._pelvis(spin[6:9], spin_rate[6:9], quaternions[8:12])
-        self._angular_momentum(velocity, spin[6:9])
-        return desired
+        self._pelvis(motion.spin[6:9], motion.spin_rate[6:9], quaternions[8:12])
+        self._angular_momentum(velocity, motion.spin[6:9])
+        return self.desired
 
     def _ski(
         self,
@@ -105,15 +107,15 @@ class TaskSet:
         dynamics, gains, desired = self.dynamics, self.gains, self.desired
         start = self._columns["ski_position"].start + 3 * ski
         place, turn = slice(start, start + 3), slice(3 * ski, 3 * ski + 3)
-        offset, rotation_error = desired.ski_offset[ski], desired.ski_turn[ski]
+        offset, turn_error = desired.ski_offset[ski], desired.ski_turn[ski]
         np.subtract(value[place], dynamics.ski_position(ski), out=offset)
         current = dynamics.xquat[dynamics.model.ski_body[ski]].tolist()
-        rotation_error[:] = _rotation_error(quaternions[4 * ski : 4 * ski + 4], current)
+        turn_error[:] = rotation_error(quaternions[4 * ski : 4 * ski + 4], current)
         moving = dynamics.ski_velocity[ski]
         linear = gains.ski.kp * offset + gains.ski.kd * (velocity[place] - moving[:3]) + acceleration[place]
         axes = desired.ski_axes[ski]
         axes[:] = dynamics.ski_rotation(ski)
-        error, slip = rotation_error @ axes, (spin[turn] - moving[3:]) @ axes
+        error, slip = turn_error @ axes, (spin[turn] - moving[3:]) @ axes
         desired.ski[ski, :3] = linear
         desired.ski[ski, 3:] = gains.ski.kp * error + gains.ski.kd * slip + spin_rate[turn] @ axes
         desired.ski[ski, 3] += (gains.edging.kp - gains.ski.kp) * error[0] + (gains.edging.kd - gains.ski.kd) * slip[0]
@@ -135,7 +137,7 @@ class TaskSet:
 
     def _pelvis(self, spin: np.ndarray, spin_rate: np.ndarray, quaternion: list[float]) -> None:
         dynamics, gain = self.dynamics, self.gains.pelvis
-        error = np.array(_rotation_error(quaternion, dynamics.xquat[1].tolist()))
+        error = np.array(rotation_error(quaternion, dynamics.xquat[1].tolist()))
         rotation = dynamics.root_rotation
         # the root's angular velocity and acceleration are in its own axes
         self.desired.pelvis[:] = (
@@ -151,7 +153,7 @@ class TaskSet:
         self.desired.angular_momentum_rate[:] = self.gains.angular_momentum.kd * wanted
 
 
-def _rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:
+def rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:
     """Return the world rotation vector [rad] that turns `current` into `target`, a quaternion of any length."""
     tw, tx, ty, tz = target
     cw, cx, cy, cz = current

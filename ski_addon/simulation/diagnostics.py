@@ -13,7 +13,8 @@ from .recording import Recording
 def summarise(recording: Recording, step_seconds: list[float] | None = None) -> dict[str, Any]:
     """Return the run's summary: the keys of `summary.json`.
 
-    Lengths in metres, angles in degrees where the key says so, forces in body weights; `torque_ratio_max` is of the
+    `track_offset_max_m` is of the skis; `capture_margin_min_m` and `zmp_margin_min_m` are the least distances from losing
+    balance and from the border of the bearing edges. Lengths in metres, angles in degrees where the key says so, forces in body weights; `torque_ratio_max` is of the
     human limit; `step_us_*` are wall microseconds a step, None when not measured.
     """
     weight = float(recording.header["mass"]) * STANDARD_GRAVITY
@@ -30,6 +31,9 @@ def summarise(recording: Recording, step_seconds: list[float] | None = None) -> 
         "ski_error_rms_m": _rms(recording.ski_error),
         "com_error_max_m": _largest(recording.com_error),
         "com_error_rms_m": _rms(recording.com_error),
+        "track_offset_max_m": _largest(recording.track_offset[:, 0]),
+        "capture_margin_min_m": _least(recording.capture_margin),
+        "zmp_margin_min_m": _least(recording.zmp_margin),
         "torque_ratio_max": _largest(recording.torque_ratio),
         "torque_ratio_joint": recording.header["actuated_joint_names"][worst],
         "joint_margin_min_deg": float(np.rad2deg(np.min(recording.joint_margin, initial=np.pi))),
@@ -52,6 +56,10 @@ def summarise(recording: Recording, step_seconds: list[float] | None = None) -> 
 
 def _largest(values: np.ndarray) -> float:
     return float(np.max(np.abs(values), initial=0.0))
+
+
+def _least(values: np.ndarray) -> float:
+    return float(values.min()) if len(values) else 0.0
 
 
 def _rms(values: np.ndarray) -> float:

@@ -18,7 +18,9 @@ LOWEST_HEAD = 0.23
 LOWEST_COM = 0.18
 """Height of the centre of mass over the snow, in units of stature, below which the skier sits."""
 SKI_LEFT_TRACK = 0.4
-"""Error of a ski corner [m] beyond which a ski has left its track."""
+"""Error of a ski corner [m], from where it is steered, beyond which a ski has left its track."""
+FARTHEST_OFF = 6.0
+"""Distance of the skis from the track [m] beyond which a skier who steered to stay up is lost."""
 TELLING_TIME = 0.03
 """A hinge at its torque limit for this long [s] before a fall is named as its reason."""
 STALLED, GLIDING = 0.02, 0.5
@@ -64,11 +66,17 @@ class FallWatch:
         elif self._saturated_since is None:
             self._saturated_since, self._saturated_hinge = time, self._hinges[strongest]
 
-    def check(self, time: float, progress: float, command: Command, ski_error: float) -> Fall | None:
-        """Return the fall that has happened at this state, or None."""
+    def check(
+        self, time: float, progress: float, command: Command, ski_error: float, track_offset: float
+    ) -> Fall | None:
+        """Return the fall that has happened at this state, or None.
+
+        `ski_error` [m] is the largest one of a ski corner from where it is steered, `track_offset` [m] the skis' distance
+        from the track.
+        """
         dynamics = self._dynamics
         normal = self._terrain.normal(dynamics.com[0], dynamics.com[1])
-        what = self._what(normal, ski_error)
+        what = self._what(normal, ski_error, track_offset)
         if what is not None:
             return Fall("fell", time, what, progress, self._why(time, command))
         if command.rate < STALLED and float(command.sample[0, self._speed][0]) > GLIDING:
@@ -85,7 +93,7 @@ class FallWatch:
             return None
         return Fall("diverged", time, "the state is no longer a number", progress, "the step before it went too far")
 
-    def _what(self, normal: np.ndarray, ski_error: float) -> str | None:
+    def _what(self, normal: np.ndarray, ski_error: float, track_offset: float) -> str | None:
         dynamics, height = self._dynamics, self._height
         head = self._above_snow(dynamics.body_position(self._head), normal)
         com = self._above_snow(dynamics.com, normal)
@@ -97,6 +105,8 @@ class FallWatch:
             return f"the body came down to {com:.2f} m over the snow"
         if ski_error > SKI_LEFT_TRACK:
             return f"a ski left its track by {ski_error:.2f} m"
+        if abs(track_offset) > FARTHEST_OFF:
+            return f"the skis were steered {abs(track_offset):.1f} m off the track"
         return None
 
     def _above_snow(self, point: np.ndarray, normal: np.ndarray) -> float:

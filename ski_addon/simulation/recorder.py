@@ -28,7 +28,7 @@ class Recorder:
             self._counts = np.concatenate((self._counts, np.empty_like(self._counts)))
         row = self._reals[self.count]
         for place, value in zip(self._slices, reals, strict=True):
-            row[place] = value if np.isscalar(value) else value.reshape(-1)
+            row[place] = value.reshape(-1) if isinstance(value, np.ndarray) else value
         self._counts[self.count] = counts
         self.count += 1
 

@@ -55,6 +55,12 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "torque_ratio": (31,),
     "joint_margin": (),
     "push_force": (3,),
+    "track_offset": (2,),
+    "steering_offset": (),
+    "capture_margin": (),
+    "zmp": (2,),
+    "zmp_margin": (),
+    "disturbance": (3,),
 }
 """Real numbers recorded each step, and their shapes."""
 COUNTS = {
@@ -83,7 +89,11 @@ class Recording:
     `phase` (n,) int8, `turn` (n,) int32, `curvature` (n,) [1/m]; `track_position`, `track_tangent`, `surface_normal`
     (n, 3); `solver_iterations`, `solver_status` (0: converged), `solver_attempts`; `root_residual` [N or N m];
     `torque_ratio` (n, 31) of the human limit, 0..1; `joint_margin` (n,) least distance of a hinge from its limit [rad];
-    `push_force` (n, 3) sum of the pushes from outside [N, world].
+    `push_force` (n, 3) sum of the pushes from outside [N, world] and `disturbance` (n, 3) what the skier felt of them;
+    `track_offset` (n, 2) of the skis' middle and of the centre of mass to the left of the plan [m], `steering_offset`
+    (n,) of the line the skis are steered along; `capture_margin` (n,) [m]: positive while steering can keep the skier up;
+    `zmp` (n, 2) where the load acts, along and to the left of the skis from their middle [m], and `zmp_margin` (n,) [m]
+    from there to the border of the bearing edges. Errors and offsets are from the plan, not from the steered line.
     """
 
     header: dict[str, Any]
@@ -118,6 +128,12 @@ class Recording:
     torque_ratio: np.ndarray
     joint_margin: np.ndarray
     push_force: np.ndarray
+    track_offset: np.ndarray
+    steering_offset: np.ndarray
+    capture_margin: np.ndarray
+    zmp: np.ndarray
+    zmp_margin: np.ndarray
+    disturbance: np.ndarray
 
     def __post_init__(self) -> None:
         for name in array_names():

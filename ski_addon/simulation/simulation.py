@@ -21,6 +21,7 @@ from .falls import Fall, FallWatch
 from .pushes import Pushes
 from .recorder import Recorder
 from .recording import Recording
+from .support import SkiGauge
 from .versions import library_versions
 
 Progress = Callable[[float, str], "bool | None"]
@@ -43,7 +44,16 @@ class Simulation:
         self.snow = Snow.of(spec.snow, spec.skier)
         self.reference = Reference(plan, model)
         self.dynamics = Dynamics(model, self.snow.drag_factor)
-        self.controller = Controller(self.dynamics, self.reference, self.snow, spec.simulation.segments, Gains())
+        self.controller = Controller(
+            self.dynamics,
+            self.reference,
+            self.snow,
+            spec.simulation.segments,
+            Gains(),
+            self.time_step,
+            # a plan without lean is not balanced: there is nothing to come back to
+            replans=spec.technique.balance == "steering" and spec.technique.inclination,
+        )
         self.step_total = math.ceil(plan.duration / self.time_step)
         self.step_done = 0
         self.progress = 0.0  # [s] into the plan
@@ -54,10 +64,7 @@ class Simulation:
         self._watch = FallWatch(self.dynamics, self.reference, terrain)
         self._pushes = Pushes(spec.push, model, self.time_step)
         self._recorder = Recorder(self.step_total + 256)
-        half_length, half_width = 0.5 * model.skeleton.ski_length, 0.5 * model.skeleton.ski_width
-        self._corners = np.array(
-            [(x, y, 0.0) for x in (half_length, -half_length) for y in (half_width, -half_width)]
-        ).T.copy()
+        self._gauge = SkiGauge(self.dynamics, self.reference)
         self._labels = (plan.phase.tolist(), plan.turn.tolist())
         self._start()
 
@@ -92,12 +99,14 @@ class Simulation:
         self.arc_length = float(command.sample[0, self.reference.columns["arc_length"]][0])
         ratio = np.maximum(command.torque / self.model.torque_upper, command.torque / self.model.torque_lower)
         self._watch.note_torques(now, ratio)
-        ski_error = self._ski_error()
-        if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
-            self.fall = self._watch.check(now, self.arc_length, command, ski_error)
         value, columns = command.sample[0], self.reference.columns
+        desired = self.controller.desired
+        followed = self._gauge.corner_error(desired.ski_offset, desired.ski_turn)
+        track_offset = self._gauge.track_offset(value)
+        if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
+            self.fall = self._watch.check(now, self.arc_length, command, followed, track_offset[0])
         self._pushes.update(self.step_done, dynamics, value[columns["tangent"]], value[columns["normal"]])
-        self._record(now, command, ratio, ski_error)
+        self._record(now, command, ratio, followed, track_offset)
         if self.fall is not None:
             return
         acceleration = dynamics.accelerations(command.torque, command.snow, self._pushes.generalised)
@@ -127,20 +136,14 @@ class Simulation:
         velocity[:3] = slope[columns["com"]] - dynamics.com_velocity
         dynamics.qvel[:] = velocity
 
-    def _ski_error(self) -> float:
-        """Return the largest distance [m] of a ski corner from its reference."""
-        desired = self.controller.desired
-        worst = 0.0
-        for ski in range(2):
-            x, y, z = desired.ski_turn[ski].tolist()
-            turn = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-            error = desired.ski_offset[ski][:, None] + turn @ (self.dynamics.ski_rotation(ski) @ self._corners)
-            worst = max(worst, float((error * error).sum(axis=0).max()))
-        return math.sqrt(worst)
-
-    def _record(self, now: float, command: Command, ratio: np.ndarray, ski_error: float) -> None:
+    def _record(
+        self, now: float, command: Command, ratio: np.ndarray, followed: float, track_offset: tuple[float, float]
+    ) -> None:
         dynamics, columns, value = self.dynamics, self.reference.columns, command.sample[0]
-        desired, model = self.controller.desired, self.model
+        balance, model = self.controller.balance, self.model
+        ski_error = self._gauge.planned_error(value) if balance.replanned else followed
+        astray = dynamics.com - value[columns["com"]]
+        *zero_moment_point, border = self._gauge.zero_moment_point(command, value[columns["normal"]])
         place = self.reference.interval(self.progress)
         normal, left = value[columns["normal"]], value[columns["across"]]
         over = dynamics.com - value[columns["track_position"]]
@@ -165,7 +168,7 @@ class Simulation:
                 dynamics.com,
                 value[columns["com"]],
                 ski_error,
-                math.sqrt(desired.com_offset @ desired.com_offset),
+                math.sqrt(astray @ astray),
                 float(value[columns["turn_phase"]][0]),
                 float(value[columns["curvature"]][0]),
                 value[columns["track_position"]],
@@ -175,6 +178,12 @@ class Simulation:
                 ratio,
                 margin,
                 self._pushes.force,
+                track_offset,
+                balance.steering.offset,
+                balance.margin,
+                zero_moment_point,
+                border,
+                balance.push,
             ),
             (self._labels[0][place], self._labels[1][place], solution.iterations, solution.status, solution.attempts),
         )

@@ -8,10 +8,14 @@ two small angles.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 FADE_FROM, FADE_TO = np.deg2rad(0.5), np.deg2rad(8.0)
 """Edge angles [rad] between which the lifted edge stops bearing."""
+SOFT = 0.05
+"""Sine of the edge angle below which a ski's lift is rounded."""
 
 
 def contact_points(length: float, width: float, segments: int) -> np.ndarray:
@@ -35,8 +39,14 @@ def edge_bearing(edge_angle: float) -> tuple[float, float]:
     return (1.0, lifted) if edge_angle > 0.0 else (lifted, 1.0)
 
 
+def lift_slope(edge_angle: float, width: float) -> tuple[float, float]:
+    """Return `edge_lift` [m] of one angle [rad] and its derivative [m/rad]."""
+    sine = math.sin(edge_angle)
+    root = math.sqrt(sine * sine + SOFT * SOFT)
+    return 0.5 * width * (root - SOFT), 0.5 * width * sine * math.cos(edge_angle) / root
+
+
 def edge_lift(edge_angle: np.ndarray, width: float) -> np.ndarray:
     """Return how far [m] the middle of a ski's base rises when it stands on one edge; smooth through flat."""
-    soft = 0.05
     sine = np.sin(np.array(edge_angle, dtype=float, order="C"))
-    return 0.5 * width * (np.sqrt(sine**2 + soft**2) - soft)
+    return 0.5 * width * (np.sqrt(sine**2 + SOFT**2) - SOFT)

@@ -328,6 +328,13 @@ class TechniqueSpec:
         "Snow force kept at a transition; the legs bend to keep it",
         advanced=True,
     )
+    balance: str = choice(
+        "steering",
+        ("steering", "tracking"),
+        "Balance",
+        "How a skier who is pushed off the plan stays up: steering = moves the skis under the body and comes back to "
+        "the track; tracking = only pulls back to the plan",
+    )
     pole: str = choice("trail", ("trail",), "Poles", "What the poles do: trail = hang back by their own weight")
 
 
