@@ -51,7 +51,7 @@ def draw_path() -> Figure:
     points = np.array([(point.x, point.y) for point in spec.point])
     axes.plot(*points.T, "o:", color=PAPER, ms=5, lw=1.0, label="points")
     for speed, colour in ((6, LINE), (14, LEFT)):
-        faster = spec.with_overrides({"course.start_speed": speed})
+        faster = spec.with_overrides({"course.target_speed": speed})
         track = build_path_track(faster, build_terrain(faster.slope))
         down = track.position[:, 0] / np.cos(build_terrain(spec.slope).mean_angle)
         axes.plot(down, track.position[:, 1], color=colour, lw=1.6, label=f"smoothed for {speed} m/s")

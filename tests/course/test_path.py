@@ -109,6 +109,12 @@ def test_faster_path_is_smoothed_to_what_the_lean_allows(speed):
     assert gap(track, WAVES[0]) < 0.05 and gap(track, WAVES[-1]) < 0.05
 
 
+def test_speed_to_hold_comes_before_the_start_speed():
+    held = drawn(WAVES, start_speed=3, target_speed=9)
+    assert curvature_limit(held) == curvature_limit(drawn(WAVES, start_speed=9)) < curvature_limit(drawn(WAVES))
+    assert curvature_limit(drawn(WAVES, start_speed=0)) == pytest.approx(1.0 / 3.0)
+
+
 def test_curvature_is_continuous():
     for name in ("drawn_path", "s_curve"):
         spec = RunSpec.from_toml(find_document(name))

@@ -53,7 +53,7 @@ def test_given_spacing_and_offset_come_before_usual_ones():
 @pytest.mark.parametrize(
     ("content", "way"),
     [
-        ({"course": {"kind": "gates", "gate_count": 10, "gate_spacing": 12, "gate_offset": 5}}, 130.0),
+        ({"course": {"kind": "gates", "gate_count": 10, "gate_spacing": 12, "gate_offset": 5}}, 156.0),
         ({"course": {"kind": "gates", "gate_setting": "list"}, "gate": [{"x": 0, "y": 0}, {"x": 30, "y": 40}]}, 50.0),
         ({"course": {"kind": "path"}, "point": [{"x": 0, "y": 0}, {"x": 3, "y": 4}, {"x": 15, "y": 9}]}, 18.0),
         ({"course": {"kind": "bumps", "run_length": 80}}, 80.0),
@@ -61,6 +61,11 @@ def test_given_spacing_and_offset_come_before_usual_ones():
         ({"course": {"kind": "bumps"}, "slope": {"kind": "moguls", "mogul_count": 8, "mogul_spacing": 3.5}}, 38.0),
     ],
 )
-def test_estimate_of_other_courses_is_their_way_at_the_start_speed(content, way):
-    content["course"]["start_speed"] = 4
+def test_estimate_of_other_courses_is_their_way_at_the_speed_to_hold(content, way):
+    content["course"]["target_speed"] = 4
     assert estimate(RunSpec.from_dict(content)).simulated_seconds == pytest.approx(way / 4.0)
+
+
+def test_estimate_of_a_run_from_rest_is_finite():
+    content = {"course": {"kind": "bumps", "run_length": 60, "start_speed": 0}}
+    assert estimate(RunSpec.from_dict(content)).simulated_seconds == pytest.approx(10.0)
