@@ -63,7 +63,8 @@ def test_document_is_checked_before_anything_is_planned(monkeypatch, section, ke
 def test_every_shipped_run_can_be_planned_within_its_own_limit(name):
     run = planned(name)
     assert lean(run.plan) <= run.spec.technique.inclination_max_deg
-    assert run.plan.duration == pytest.approx(estimate(run.spec).simulated_seconds, rel=0.05)
+    rough = 0.05 if run.spec.course.kind == "turns" else 0.4  # only turns are asked for by their duration
+    assert run.plan.duration == pytest.approx(estimate(run.spec).simulated_seconds, rel=rough)
     assert np.all(run.plan.speed > 1.0) and np.all(run.plan.load > 0.0)
     assert all(np.all(np.isfinite(array)) for array in arrays(run.plan).values())
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import SpecError
 from ..spec import RunSpec
 from ..terrain import Terrain, mogul_crests
-from .fair_line import STEEPEST, FairLine, Poles, fair_line
+from .fair_line import STEEPEST, FairLine, Poles, fair_line, turning_curvature
 from .gate_settings import MARGIN, alternate, run_in_of
 from .labels import label_turns
 from .surface import track_on_surface
@@ -30,9 +30,9 @@ def build_bump_track(spec: RunSpec, terrain: Terrain) -> Track:
     """
     crests = crest_places(spec)
     start = float(crests[0]) - run_in_of(spec.course, crests)
-    usual_end = float(crests[-1]) + _step(crests) + 5.0
+    usual_end = float(crests[-1]) + MARGIN * _step(crests) + 3.0
     end = usual_end if isinstance(spec.course.run_length, str) else start + spec.course.run_length
-    down, left, curvature = _turning(spec, crests[crests < end - _step(crests)])
+    down, left, curvature = _turning(spec, crests[crests < end - MARGIN * _step(crests)])
     before = np.arange(down[0] - SPACING, start, -SPACING)[::-1]
     after = np.arange(down[-1] + SPACING, end, SPACING)
     down, left = np.concatenate((before, down, after)), np.pad(left, (len(before), len(after)), mode="edge")
@@ -71,21 +71,22 @@ def _turning(spec: RunSpec, crests: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     if amplitude == 0.0 or not len(crests):
         straight = np.arange(3) * SPACING + (crests[0] if len(crests) else 0.0)
         return straight, np.zeros(3), np.zeros(3)
-    line = _line(spec, crests, amplitude)
+    poles, line = _line(spec, crests, amplitude)
     if not _turns_well(line):
         works = _largest_amplitude(spec, crests)
         problem = f"makes turns tighter than {RADIUS_MIN:g} m at a spacing of {_step(crests):g} m"
         hint = f"at most {works:.2f} m would work" if works else "make course.turn_spacing larger"
         raise SpecError("course.turn_amplitude", amplitude, problem=problem, hint=hint)
-    return line.sampled(SPACING)
+    down, left, _ = line.sampled(SPACING)
+    return down, left, turning_curvature(poles, line, down)
 
 
-def _line(spec: RunSpec, crests: np.ndarray, amplitude: float) -> FairLine:
+def _line(spec: RunSpec, crests: np.ndarray, amplitude: float) -> tuple[Poles, FairLine]:
     side = alternate(spec.course.first_turn, len(crests))
     lead_in = min(run_in_of(spec.course, crests), MARGIN * _step(crests))
     zero = np.zeros(len(crests))
     poles = Poles(crests, zero, side, np.full(len(crests), amplitude), np.full(len(crests), np.nan))
-    return fair_line(poles, lead_in, _step(crests))
+    return poles, fair_line(poles, lead_in, MARGIN * _step(crests))
 
 
 def _turns_well(line: FairLine) -> bool:
@@ -97,8 +98,8 @@ def _turns_well(line: FairLine) -> bool:
 
 def _largest_amplitude(spec: RunSpec, crests: np.ndarray) -> float:
     """Return the largest amplitude [m], in hundredths, that works; 0 if none does."""
-    some, low, high = crests[:6], 0.0, spec.course.turn_amplitude
-    for _ in range(11):
+    some, low, high = crests[:6], 0.0, min(spec.course.turn_amplitude, 0.6 * _step(crests))
+    for _ in range(8):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _turns_well(_line(spec, some, middle)) else (low, middle)
-    return float(np.floor(100.0 * low)) / 100.0
+        low, high = (middle, high) if _turns_well(_line(spec, some, middle)[1]) else (low, middle)
+    return float(np.floor(98.0 * low)) / 100.0

@@ -22,12 +22,11 @@ from .quadratic import solve_quadratic
 
 STEEPEST = np.sin(np.deg2rad(78.0))
 """A line never turns farther from the fall line than the angle of this sine."""
-_KNOT_SPACING = 0.8
+_KNOT_SPACING, _KNOTS_PER_RADIUS = 0.8, 7.0
 _FEWEST_CELLS, _MOST_CELLS = 10, 60
-_ROUNDS, _PATIENCE = 60, 12
-_SETTLED = 1e-10
-_STIFF = 1e5
-"""Weight of an asked radius and of falling curvature, in units of what smoothness weighs."""
+_ROUNDS, _PATIENCE = 80, 12
+_STIFF, _SOFT = 1e5, 1e-6
+"""Weight of an asked radius, and how far curvature may rise where it must fall, in units of what smoothness weighs."""
 _FADE = (1.0 / 6.0, 0.5)
 """Over what way curvature fades beside a turn of asked radius: share of the distance between poles, of the radius."""
 _HAIR = 1e-6
@@ -49,6 +48,12 @@ class Poles:
 
     def __len__(self) -> int:
         return len(self.down)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Where the line starts and ends [m left]: half-way between the first two and the last two turns."""
+        apex = self.left - self.side * self.distance
+        return (float(np.mean(apex[:2])), float(np.mean(apex[-2:]))) if len(self) > 1 else (float(self.left[0]),) * 2
 
     def part(self, which: slice) -> Poles:
         """Return some of the poles."""
@@ -86,12 +91,6 @@ class FairLine:
         down = np.interp(np.linspace(0.0, arc[-1], int(np.ceil(arc[-1] / spacing)) + 1), arc, coarse)
         return down, self.start_left + self._travel(down), self.sines(down, 1)
 
-    def left_at(self, down: np.ndarray) -> np.ndarray:
-        """Return `left` (n,) [m] at rising places `down` (n,) [m]."""
-        knots = np.unique(self.sine.t)
-        every = np.union1d(knots, down)
-        return self.start_left + self._travel(every)[np.searchsorted(every, down)]
-
     def _travel(self, down: np.ndarray) -> np.ndarray:
         """Return how far the line has gone to the left since the first of `down` (n,) [m]."""
         node, weight = np.polynomial.legendre.leggauss(5)
@@ -101,10 +100,11 @@ class FairLine:
         return np.concatenate(([0.0], np.cumsum(half * ((sine / np.sqrt(1.0 - sine**2)) @ weight))))
 
 
-def fair_line(poles: Poles, lead_in: float, lead_out: float) -> FairLine:
+def fair_line(poles: Poles, lead_in: float, lead_out: float, tolerance: float = 1e-7) -> FairLine:
     """Return the smoothest line past `poles`, whose `down` must rise.
 
-    It starts `lead_in` [m] before the first pole and ends `lead_out` [m] after the last, straight down the fall line.
+    It starts `lead_in` [m] before the first pole and ends `lead_out` [m] after the last, straight down the fall line
+    and half-way between turns. `tolerance` says when it has settled, in sines of headings and metres.
     """
     begin, end = float(poles.down[0] - lead_in), float(poles.down[-1] + lead_out)
     gaps = np.diff(np.concatenate(([begin], poles.down, [end])))
@@ -119,15 +119,22 @@ def fair_line(poles: Poles, lead_in: float, lead_out: float) -> FairLine:
         largest = np.max(np.abs(solved(problem.points)))
         if sine is not None:
             change = np.max(np.abs(solved(problem.points) - sine(problem.points)))
-            settled = bool(max(change, np.max(np.abs(moved - apex))) < _SETTLED)
+            settled = bool(max(change, np.max(np.abs(moved - apex))) < tolerance)
         sine = solved
         if settled or (count > _PATIENCE and largest > 1.0):
             break
         share = _secant_share(share, error, moved - apex)
         error = moved - apex
         apex = apex + share * error
-    start = _start_left(poles, FairLine(begin, end, sine, 0.0, apex, settled))
-    return FairLine(begin, end, sine, start, apex, settled)
+    return FairLine(begin, end, sine, poles.ends[0], apex, settled)
+
+
+def turning_curvature(poles: Poles, line: FairLine, down: np.ndarray) -> np.ndarray:
+    """Return the curvature (n,) [1/m] at `down` (n,) [m], without the bends to the first turn and from the last one."""
+    curvature = line.sines(down, 1)
+    lead_in = (down < line.apex[0]) & (curvature * poles.side[0] < 0.0)
+    lead_out = (down > line.apex[-1]) & (curvature * poles.side[-1] < 0.0)
+    return np.where(lead_in | lead_out, 0.0, curvature)
 
 
 def _secant_share(share: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.ndarray:
@@ -136,14 +143,6 @@ def _secant_share(share: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.
     with np.errstate(divide="ignore", invalid="ignore"):
         secant = np.clip(share * before / gained, 0.3, 1.2)
     return np.where(np.abs(gained) > 1e-9, secant, share)
-
-
-def _start_left(poles: Poles, line: FairLine) -> float:
-    """Return where a line must start [m left] to pass the first pole at its distance."""
-    if line.steepest >= 0.999:
-        return 0.0
-    cosine = np.sqrt(1.0 - line.sines(line.apex[0]) ** 2)
-    return float(poles.left[0] - poles.side[0] * poles.distance[0] * cosine - line.left_at(line.apex[:1])[0])
 
 
 @dataclass(frozen=True)
@@ -163,7 +162,7 @@ class _Problem:
     @classmethod
     def at(cls, poles: Poles, apex: np.ndarray, begin: float, end: float) -> _Problem:
         stops = np.concatenate(([begin], apex, [end]))
-        cells = np.clip(np.ceil(np.diff(stops) / _KNOT_SPACING), _FEWEST_CELLS, _MOST_CELLS).astype(int)
+        cells = np.clip(np.ceil(np.diff(stops) / _knot_spacing(poles)), _FEWEST_CELLS, _MOST_CELLS).astype(int)
         inner = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(stops, stops[1:], cells, strict=False)]
         breaks = np.concatenate((*inner, [end]))
         node, weight = np.polynomial.legendre.leggauss(4)
@@ -182,7 +181,7 @@ class _Problem:
         free = slice(3, -3)  # straight down the fall line, with no jump in the rate of curvature, at both ends
         rising = self._rising(bend)
         solution = solve_quadratic(
-            cost[free, free], pull[free], rows[:, free], gap, rising[:, free], self._scale / _STIFF
+            cost[free, free], pull[free], rows[:, free], gap, rising[:, free], _SOFT * self._scale
         )
         spline = BSpline(self.knots, np.concatenate((np.zeros(3), solution, np.zeros(3))), 3)
         if previous is not None:
@@ -230,18 +229,18 @@ class _Problem:
         """Return the rows (k, count) of steps of curvature on leaving an asked turn; none of them may be positive."""
         from scipy import sparse
 
-        inner = self.knots[1:-1]
-        place = 0.5 * (inner[1:-2] + inner[2:-1])
-        stops = np.concatenate(([place[0] - 1.0], 0.5 * (self.apex[1:] + self.apex[:-1]), [place[-1] + 1.0]))
-        sign = np.zeros(len(place) - 1)
-        for k in np.flatnonzero(np.isfinite(self.poles.radius)):
-            here = (place[:-1] >= stops[k] - _HAIR) & (place[1:] <= stops[k + 1] + _HAIR)
-            sign[here & (place[:-1] >= self.apex[k])] = self.poles.side[k]
-            sign[here & (place[1:] <= self.apex[k])] = -self.poles.side[k]
-        return (sparse.diags(sign) @ (bend[1:] - bend[:-1])).tocsr()[sign != 0.0]
+        between = self.knots[4:-4]  # a step is that from one stretch between knots to the next
+        every = np.concatenate((self.knots[:1], self.apex, self.knots[-1:]))
+        stops = 0.5 * (every[1:] + every[:-1])
+        pole = np.clip(np.searchsorted(stops, between) - 1, 0, len(self.poles) - 1)
+        beyond = between - self.apex[pole]
+        sign = np.where(np.abs(beyond) > _HAIR, np.sign(beyond) * self.poles.side[pole], 0.0)
+        sign[np.isnan(self.poles.radius[pole]) | (between < stops[0]) | (between > stops[-1])] = 0.0
+        inside = (bend[1:] - bend[:-1])[1:-1]
+        return (sparse.diags(sign) @ inside).tocsr()[sign != 0.0]
 
     def _passing(self, previous: Sine | None) -> tuple[Any, np.ndarray]:
-        """Return rows (n - 1, count) and values (n - 1,): how far left the line must go from each apex to the next."""
+        """Return rows (n + 1, count), values (n + 1,): how far left the line goes from apex to apex and at the ends."""
         from scipy import sparse
         from scipy.interpolate import BSpline
 
@@ -250,13 +249,19 @@ class _Problem:
         at_apex = np.zeros_like(self.apex) if previous is None else _limited(previous(self.apex))
         cosine = np.sqrt(1.0 - old**2)
         slope, gain = old / cosine, cosine**-3.0
-        section = np.searchsorted(self.apex, self.points) - 1
-        inside = np.flatnonzero((section >= 0) & (section < len(poles) - 1))
-        weights = self.weights[inside]
-        pick = sparse.csr_matrix((weights, (section[inside], inside)), shape=(len(poles) - 1, len(self.points)))
+        section = np.searchsorted(self.apex, self.points)
+        shape = (len(poles) + 1, len(self.points))
+        pick = sparse.csr_matrix((self.weights, (section, np.arange(len(self.points)))), shape=shape)
         rows = pick @ sparse.diags(gain) @ BSpline.design_matrix(self.points, self.knots, 3)
-        left = poles.left - poles.side * poles.distance * np.sqrt(1.0 - at_apex**2)
+        begin, end = poles.ends
+        left = np.concatenate(([begin], poles.left - poles.side * poles.distance * np.sqrt(1.0 - at_apex**2), [end]))
         return rows.tocsr(), np.diff(left) - pick @ (slope - gain * old)
+
+
+def _knot_spacing(poles: Poles) -> float:
+    """Return the distance between knots [m]: smaller where tight turns are asked for."""
+    asked = poles.radius[np.isfinite(poles.radius)]
+    return min(_KNOT_SPACING, float(asked.min()) / _KNOTS_PER_RADIUS) if len(asked) else _KNOT_SPACING
 
 
 def _limited(sine: np.ndarray) -> np.ndarray:

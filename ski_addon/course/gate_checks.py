@@ -11,19 +11,19 @@ from ..errors import SpecError
 from ..spec import RunSpec
 from ..spec.gate_defaults import gate_defaults
 from ..terrain import Terrain
-from .fair_line import STEEPEST, FairLine, Poles, fair_line
-from .gate_settings import set_poles
+from .fair_line import FairLine, Poles, fair_line
+from .gate_settings import MARGIN, set_poles
 
 RADIUS_MIN = 3.0
 """No turn is tighter than this [m]."""
 CLOSEST = 2.0
 """Gates stand at least this far down the slope from each other [m]."""
-STRAIGHT = 0.02
-"""The first and the last gate may be passed nearly straight, with as much curvature to the wrong side [1/m]."""
+_FARTHEST = float(np.sin(np.deg2rad(70.0)))
+"""No line to a gate turns farther from the fall line than the angle of this sine."""
 _SAME_PLACE = 0.1
 _ROUNDING = 0.97
 _LEEWAY = 0.005
-_NEIGHBOURS = 3
+_NEIGHBOURS, _HALVINGS = 2, 7
 
 
 def check_places(spec: RunSpec, poles: Poles, terrain: Terrain) -> None:
@@ -52,7 +52,7 @@ def check_line(spec: RunSpec, poles: Poles, line: FairLine) -> None:
 
 def _first_fault(poles: Poles, line: FairLine) -> tuple[int, str] | None:
     """Return the first pole that cannot be passed and why, or None."""
-    if not line.settled or line.steepest > STEEPEST:
+    if not line.settled or line.steepest > _FARTHEST:
         places = np.linspace(line.begin, line.end, 40 * len(poles))
         steep = places[int(np.argmax(np.abs(line.sines(places))))]
         after = int(np.clip(np.searchsorted(line.apex, steep), 1, len(poles) - 1))
@@ -61,7 +61,7 @@ def _first_fault(poles: Poles, line: FairLine) -> tuple[int, str] | None:
     bend = poles.side * line.sines(line.apex, 1)
     tight = _tightest(line)
     for k in range(len(poles)):
-        if bend[k] < (0.0 if 0 < k < len(poles) - 1 else -STRAIGHT):
+        if bend[k] < 0.0:
             side, other = ("left", "right") if poles.side[k] > 0 else ("right", "left")
             return k, f"cannot be passed turning {side}: the line past its neighbours turns {other} there"
         if np.isnan(poles.radius[k]) and 1.0 / tight[k] < RADIUS_MIN:
@@ -100,13 +100,7 @@ def _tightest(line: FairLine) -> np.ndarray:
 
 def _line_past(poles: Poles) -> FairLine:
     gaps = np.diff(poles.down) if len(poles) > 1 else np.array([10.0])
-    return fair_line(poles, float(gaps[0]), float(gaps[-1]))
-
-
-def _passable(poles: Poles) -> bool:
-    """Return whether a line past these poles alone has no fault."""
-    line = _line_past(poles)
-    return _first_fault(poles, line) is None
+    return fair_line(poles, MARGIN * float(gaps[0]), MARGIN * float(gaps[-1]), tolerance=1e-6)
 
 
 # -- what would work ---------------------------------------------
@@ -116,21 +110,21 @@ def _way_out(spec: RunSpec, poles: Poles, k: int) -> str:
     """Return a hint that names the side or the nearest place with which gate `k` could be passed."""
     if (side := _other_side(spec, k)) is not None:
         return f'side = "{side}" would work'
-
-    def moved(left: float, lower: float) -> Poles:
-        places = poles.left.copy()
-        places[k] = left
-        down = poles.down + np.where(np.arange(len(poles)) >= k, lower, 0.0)
-        return dataclasses.replace(poles, left=places, down=down).part(_around(k))
-
     straight = _straight_place(poles, k)
-    share = _least(lambda f: _passable(moved(_rounded(poles.left[k], straight, f), 0.0)))
-    if share is not None:
+
+    def aside(share: float) -> Poles:
+        left = poles.left.copy()
+        left[k] = _rounded(left[k], straight, share)
+        return dataclasses.replace(poles, left=left)
+
+    def lower(share: float) -> Poles:
+        return dataclasses.replace(poles, down=poles.down + np.where(np.arange(len(poles)) >= k, _lowered(share), 0.0))
+
+    if (share := _least(aside, k)) is not None:
         return f"y = {_rounded(poles.left[k], straight, share):.1f} would work"
-    lower = _least(lambda f: _passable(moved(poles.left[k], np.ceil(300.0 * f) / 10.0))) if k else None
-    if lower is not None:
+    if k and (share := _least(lower, k)) is not None:
         rest = "" if k + 1 == len(poles) else ", with all gates after it as much farther down,"
-        return f"x = {poles.down[k] + np.ceil(300.0 * lower) / 10.0:.1f}{rest} would work"
+        return f"x = {poles.down[k] + _lowered(share):.1f}{rest} would work"
     return "take it out, or move it and the gates beside it"
 
 
@@ -145,17 +139,16 @@ def _other_side(spec: RunSpec, k: int) -> str | None:
 
 def _refused_set(spec: RunSpec, poles: Poles, k: int, problem: str) -> SpecError:
     """Return the error of a generated set of gates, with the largest offset or the least spacing that would work."""
-    offset, near = gate_defaults(spec.course).offset, _around(k)
+    usual = gate_defaults(spec.course)
     problem = f"makes a course that cannot be skied: gate {k + 1} {problem}"
-    share = _least(lambda f: _passable(dataclasses.replace(poles, left=(1.0 - f) * poles.left).part(near)))
-    if share is not None and offset * (1.0 - share) >= 0.1:
-        hint = f"at most {np.floor(10.0 * offset * (1.0 - share)) / 10.0:.1f} m would work"
-        return SpecError("course.gate_offset", offset, problem=problem, hint=hint)
-    spacing = gate_defaults(spec.course).spacing
-    wider = _least(lambda f: _passable(dataclasses.replace(poles, down=(1.0 + 9.0 * f) * poles.down).part(near)))
-    least = None if wider is None else np.ceil(10.0 * spacing * (1.0 + 9.0 * wider)) / 10.0
+    share = _least(lambda f: dataclasses.replace(poles, left=(1.0 - f) * poles.left), k, len(poles))
+    if share is not None and usual.offset * (1.0 - share) >= 0.1:
+        hint = f"at most {np.floor(10.0 * usual.offset * (1.0 - share)) / 10.0:.1f} m would work"
+        return SpecError("course.gate_offset", usual.offset, problem=problem, hint=hint)
+    share = _least(lambda f: dataclasses.replace(poles, down=(1.0 + 9.0 * f) * poles.down), k, len(poles))
+    least = None if share is None else np.ceil(10.0 * usual.spacing * (1.0 + 9.0 * share)) / 10.0
     hint = "use a smaller course.gate_distance" if least is None else f"at least {least:.1f} m would work"
-    return SpecError("course.gate_spacing", spacing, problem=problem, hint=hint)
+    return SpecError("course.gate_spacing", usual.spacing, problem=problem, hint=hint)
 
 
 def _refused_radius(spec: RunSpec, poles: Poles, k: int) -> SpecError:
@@ -175,30 +168,46 @@ def _around(k: int) -> slice:
 
 
 def _largest_radius(poles: Poles, k: int) -> float | None:
-    """Return the largest radius [m], in tenths, that fits at gate `k` and is asked of no later gate, or None."""
-    near, asked = _around(k), float(poles.radius[k])
-    nearby = poles.part(near)
+    """Return the largest radius [m], in tenths, that fits at gate `k` and is asked of no gate near it, or None."""
+    free = _line_past(dataclasses.replace(poles, radius=np.full(len(poles), np.nan)))
+    natural = 1.0 / abs(float(free.sines(free.apex[k], 1)))
+    most = min(float(poles.radius[k]), max(1.6 * natural, 2.0 * RADIUS_MIN))  # arcs alone gain a fifth
 
     def radius(share: float) -> float:
-        return float(np.floor(10.0 * (asked + share * (RADIUS_MIN - asked)) + 1e-6) / 10.0)
+        return float(np.floor(10.0 * (most + share * (RADIUS_MIN - most)) + 1e-6) / 10.0)
 
-    def fits(share: float) -> bool:
-        part = dataclasses.replace(nearby, radius=np.minimum(nearby.radius, radius(share)))
-        return _unfit(part, _line_past(part)) is None
-
-    share = _least(fits, rounds=6)
+    share = _least(lambda f: dataclasses.replace(poles, radius=np.minimum(poles.radius, radius(f))), k)
     return None if share is None else radius(share)
 
 
-def _least(works: Callable[[float], bool], rounds: int = 11) -> float | None:
-    """Return nearly the least share in 0..1 that works, if shares work from somewhere on; None if 1 does not."""
-    if not works(1.0):
+def _least(course: Callable[[float], Poles], k: int, until: int = 0) -> float | None:
+    """Return nearly the least share in 0..1 for which `course(share)` can be passed around gate `k`, or None.
+
+    The gates near `k` are tried first; what works for them is then tried with all gates, with a little more if it must,
+    for which gates from `until` on may still be at fault.
+    """
+    near = _around(k)
+    if not _passable(course(1.0).part(near)):
         return None
     low, high = 0.0, 1.0
-    for _ in range(rounds):
+    for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if works(middle) else (middle, high)
-    return high
+        low, high = (low, middle) if _passable(course(middle).part(near)) else (middle, high)
+    for more in (0.0, 0.02, 0.05, 0.1, 0.2, 0.4):
+        if high + more <= 1.0 and _passable(course(high + more), max(near.stop, until)):
+            return high + more
+    return None
+
+
+def _passable(poles: Poles, until: int | None = None) -> bool:
+    """Return whether the line past these poles has no fault before gate `until`."""
+    line = _line_past(poles)
+    fault = _unfit(poles, line) if np.isfinite(poles.radius).any() else (_first_fault(poles, line) or (None,))[0]
+    return fault is None or (until is not None and fault >= until)
+
+
+def _lowered(share: float) -> float:
+    return float(np.ceil(300.0 * share)) / 10.0
 
 
 def _straight_place(poles: Poles, k: int) -> float:
@@ -206,7 +215,8 @@ def _straight_place(poles: Poles, k: int) -> float:
     apex = poles.left - poles.side * poles.distance
     others = np.delete(np.arange(len(poles)), k)
     chord = float(np.interp(poles.down[k], poles.down[others], apex[others])) if len(others) else float(apex[k])
-    return chord + float(poles.side[k]) * (float(poles.distance[k]) - 0.3)
+    room = 0.3 if 0 < k < len(poles) - 1 else 1.5
+    return chord + float(poles.side[k]) * (float(poles.distance[k]) - room)
 
 
 def _rounded(begin: float, end: float, share: float) -> float:

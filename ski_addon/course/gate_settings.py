@@ -11,8 +11,8 @@ from .fair_line import Poles
 
 UNEVEN_SPACING, UNEVEN_OFFSET = 0.25, 0.4
 """Shares by which spacing and offset change at most, at full variation."""
-MARGIN = 1.3
-"""The usual run-in is this many times the distance from gate to gate."""
+MARGIN = 1.5
+"""A line bends to its first gate, and away from its last, over this many times the distance from gate to gate."""
 
 
 def set_poles(spec: RunSpec) -> Poles:

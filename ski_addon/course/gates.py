@@ -8,7 +8,7 @@ import numpy as np
 
 from ..spec import RunSpec
 from ..terrain import Terrain
-from .fair_line import FairLine, Poles, fair_line
+from .fair_line import FairLine, Poles, fair_line, turning_curvature
 from .gate_checks import check_line, check_places
 from .gate_settings import MARGIN, run_in_of, set_poles
 from .labels import label_turns
@@ -17,7 +17,7 @@ from .track import Track
 
 SPACING = 0.08
 """Distance between neighbouring places of the plan-view line [m]."""
-LEAST_BEND = 0.01
+LEAST_BEND = 0.005
 """Slighter bends [1/m] are no turns."""
 
 
@@ -65,7 +65,8 @@ def build_gate_track(spec: RunSpec, terrain: Terrain) -> Track:
     check_places(spec, poles, terrain)
     line = gate_line(spec, poles)
     check_line(spec, poles, line)
-    down, left, curvature = line.sampled(SPACING)
+    down, left, _ = line.sampled(SPACING)
+    curvature = turning_curvature(poles, line, down)
     start = poles.down[0] - run_in_of(spec.course, poles.down)
     ahead = np.arange(down[0] - SPACING, start, -SPACING)[::-1]
     curvature = np.concatenate((np.zeros(len(ahead)), curvature))
@@ -78,4 +79,4 @@ def gate_line(spec: RunSpec, poles: Poles) -> FairLine:
     """Return the smoothest line past `poles`, which begins to bend at most a little more than a spacing before them."""
     run_in = run_in_of(spec.course, poles.down)
     gaps = np.diff(poles.down) if len(poles) > 1 else np.array([run_in])
-    return fair_line(poles, min(run_in, MARGIN * float(gaps[0])), float(gaps[-1]))
+    return fair_line(poles, min(run_in, MARGIN * float(gaps[0])), MARGIN * float(gaps[-1]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..errors import SpecError
@@ -9,6 +11,7 @@ from ..gravity import STANDARD_GRAVITY
 from ..spec import RunSpec
 from ..terrain import Terrain
 from .labels import label_turns
+from .pace import speed_to_hold
 from .smoothing import curvature, interpolated, smoothed, smoothed_to
 from .surface import track_on_surface
 from .track import Track
@@ -46,10 +49,15 @@ def _least_turn(bend: np.ndarray) -> float:
 
 
 def curvature_limit(spec: RunSpec) -> float:
-    """Return the largest curvature [1/m] that a skier leaning as far as allowed can ski at the start speed."""
-    lean = np.deg2rad(spec.technique.inclination_max_deg)
-    by_speed = STANDARD_GRAVITY * np.tan(lean) / spec.course.start_speed**2
-    return float(min(by_speed, 1.0 / RADIUS_MIN))
+    """Return the largest curvature [1/m] that a skier leaning as far as allowed can ski at the asked speed."""
+    sideways = STANDARD_GRAVITY * float(np.tan(np.deg2rad(spec.technique.inclination_max_deg)))
+    return min(sideways / max(asked_speed(spec), 0.1) ** 2, 1.0 / RADIUS_MIN)
+
+
+def asked_speed(spec: RunSpec) -> float:
+    """Return the speed [m/s] that is to be held, or that at the start if none is."""
+    hold = speed_to_hold(spec)
+    return hold if math.isfinite(hold) else spec.course.start_speed
 
 
 def _smooth(spec: RunSpec, points: np.ndarray, number: np.ndarray) -> np.ndarray:
@@ -58,7 +66,7 @@ def _smooth(spec: RunSpec, points: np.ndarray, number: np.ndarray) -> np.ndarray
     if isinstance(asked, str):
         limit = curvature_limit(spec)
         path = smoothed_to(path, limit)
-        _check_tight(path, points, number, limit, f"what {spec.course.start_speed:g} m/s allow", "start slower")
+        _check_tight(path, points, number, limit, f"what {asked_speed(spec):g} m/s allow", "ski slower")
         return path
     result = smoothed(path, asked)
     hint = "use more course.path_smoothing, or auto"

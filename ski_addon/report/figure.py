@@ -62,14 +62,28 @@ def save_figure(figure: Figure, target: Path) -> None:
 def _write_title(figure: Figure, recording: Recording) -> None:
     spec = RunSpec.from_text(recording.header["spec"], "the run document in the recording")
     status = recording.header["status"]
-    course = spec.course
     facts = (
-        f"{spec.skier.mass:g} kg, {spec.skier.height:g} m on {spec.slope.angle_deg:g} degrees: "
-        f"{course.turn_count} turns of {course.turn_radius:g} m, {course.turn_duration:g} s each, "
-        f"{course.transition_duration:g} s between them"
+        f"{spec.skier.mass:g} kg, {spec.skier.height:g} m on {spec.slope.angle_deg:g} degrees: {_course_words(spec)}"
     )
     ended = "" if status == "finished" else f" ({status} at {float(recording.time[-1]):.2f} s)"
     name = " ".join(spec.name.split()) + ended
     figure.text(0.055, 0.972, name, fontsize=17, fontweight="bold", color=INK, va="center", parse_math=False)
     figure.text(0.055, 0.949, facts, fontsize=10.5, color=INK, va="center")
     figure.text(0.975, 0.949, "grey: transition between turns", fontsize=9, color=QUIET, va="center", ha="right")
+
+
+def _course_words(spec: RunSpec) -> str:
+    """Return what the course is, in a few words."""
+    course = spec.course
+    if course.kind == "gates":
+        setting = {"list": "gates", "slalom": "slalom gates", "giant_slalom": "giant slalom gates"}[course.gate_setting]
+        return f"{len(spec.gate) if course.gate_setting == 'list' else course.gate_count} {setting}"
+    if course.kind == "path":
+        return f"a drawn path of {len(spec.point)} points"
+    if course.kind == "bumps":
+        way = f"turning {course.turn_amplitude:g} m beside the crests" if course.turn_amplitude else "straight"
+        return f"over {spec.slope.kind}, {way}"
+    return (
+        f"{course.turn_count} turns of {course.turn_radius:g} m, {course.turn_duration:g} s each, "
+        f"{course.transition_duration:g} s between them"
+    )

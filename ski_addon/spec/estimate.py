@@ -51,7 +51,7 @@ class Estimate:
 
 def estimate(spec: RunSpec) -> Estimate:
     """Return what simulating `spec` would take, from what its course asks for."""
-    seconds = _turning_seconds(spec.course) if spec.course.kind == "turns" else _way(spec) / spec.course.start_speed
+    seconds = _turning_seconds(spec.course) if spec.course.kind == "turns" else _way(spec) / _usual_speed(spec)
     steps = round(seconds / spec.simulation.time_step)
     return Estimate(seconds, steps, steps * BYTES_PER_STEP, SECONDS_TO_PLAN + steps * SECONDS_PER_STEP)
 
@@ -62,8 +62,14 @@ def _turning_seconds(course: CourseSpec) -> float:
     return turns * course.turn_duration + transitions * course.transition_duration
 
 
+def _usual_speed(spec: RunSpec) -> float:
+    """Return about the mean speed [m/s]: the one to hold, or somewhat more than at the start."""
+    asked = [speed for speed in (spec.course.target_speed, spec.technique.speed_limit) if not isinstance(speed, str)]
+    return min(asked) if asked else max(1.4 * spec.course.start_speed, 6.0)
+
+
 def _way(spec: RunSpec) -> float:
-    """Return about how long the track is [m]; skiing it at the start speed is a fair guess of the time it takes."""
+    """Return about how long the track is [m]."""
     course = spec.course
     if course.kind == "bumps" and not isinstance(course.run_length, str):
         return course.run_length
@@ -72,7 +78,8 @@ def _way(spec: RunSpec) -> float:
         bumps = 2.0 * spec.slope.bump_count * spec.slope.bump_width
         return spec.slope.bump_start + {"moguls": moguls, "bumps": bumps}.get(spec.slope.kind, 0.0)
     if course.kind == "gates" and course.gate_setting != "list":
-        return course.gate_count * math.hypot(gate_defaults(course).spacing, gate_defaults(course).offset)
+        gate = gate_defaults(course)
+        return (course.gate_count + 2) * math.hypot(gate.spacing, gate.offset)
     corners = [(row.x, row.y) for row in (spec.gate if course.kind == "gates" else spec.point)]
     return sum(math.dist(a, b) for a, b in itertools.pairwise(corners))
 

@@ -33,9 +33,9 @@ turn_radius = 15
 
 Keys marked *required* must be in a file; all others have the default shown. A meaning that begins with a word such as
 `gates` is that of a key for that `kind` of its section only; it does nothing, and is not required, for the others.
-Units are SI; angles are in degrees only in keys ending in `_deg`. Where a word such as `auto` is allowed beside a number, write it in quotes. A file with an
-unknown key, a wrong type or a value outside its range is refused with one line that names the file, the line in it, the
-key, its value and what is allowed:
+Units are SI; angles are in degrees only in keys ending in `_deg`. Where a word such as `auto` is allowed beside a
+number, write it in quotes. A file with an unknown key, a wrong type or a value outside its range is refused with one
+line that names the file, the line in it, the key, its value and what is allowed:
 
 ```
 run.toml line 11: course.turn_radius = 1.0 is outside 3..200 m: give a number in that range

@@ -117,3 +117,18 @@ def test_empty_recording_is_refused(tmp_path):
 def test_picture_in_a_missing_folder_is_an_output_error(tmp_path):
     with pytest.raises(OutputError, match="No such file"):
         save_report(synthetic_recording(duration=1.0), tmp_path / "none" / "a.png")
+
+
+@pytest.mark.parametrize(
+    ("course", "rows", "words"),
+    [
+        ({"kind": "gates", "gate_count": 12}, {}, "12 slalom gates"),
+        ({"kind": "gates", "gate_setting": "list"}, {"gate": [{"x": 10, "y": 1}, {"x": 20, "y": -1}]}, "2 gates"),
+        ({"kind": "path"}, {"point": [{"x": 10 * k, "y": k} for k in range(3)]}, "a drawn path of 3 points"),
+        ({"kind": "bumps"}, {}, "over plane, straight"),
+        ({"kind": "bumps", "turn_amplitude": 0.5}, {}, "over plane, turning 0.5 m beside the crests"),
+    ],
+)
+def test_title_says_what_the_course_is(course, rows, words):
+    figure = report_figure.draw_figure(synthetic_recording(RunSpec.from_dict({"course": course, **rows})))
+    assert any(text.get_text().endswith(f"degrees: {words}") for text in figure.texts)
