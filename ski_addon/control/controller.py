@@ -12,6 +12,7 @@ from .balance import Balance
 from .dynamics import Dynamics
 from .formulation import Formulation
 from .gains import Gains
+from .slide import Slide
 from .solver import OsqpSolver, Solution
 from .tasks import Desired, TaskSet, progress_rate
 
@@ -62,6 +63,7 @@ class Controller:
         self.formulation = Formulation(dynamics.model, snow, gains, segments)
         self.solver = OsqpSolver(self.formulation)
         self.balance = Balance(dynamics, reference, self.tasks.motion, time_step, replans=replans)
+        self.slide = Slide(dynamics, self.tasks.motion, time_step)
         self._normal = reference.columns["normal"]
 
     @property
@@ -77,7 +79,8 @@ class Controller:
         normal = sample[0, self._normal]
         edge_angle = np.array([edge_angle_of(dynamics.ski_rotation(ski), normal) for ski in range(2)])
         motion = self.tasks.motion.read(sample, rate)
-        self.balance.update(progress, rate, sample, edge_angle)
+        self.slide.apply()
+        self.balance.update(progress, rate, sample, edge_angle, self.slide.share)
         desired = self.tasks.follow(motion)
         problem = formulation.build(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         solution = self.solver.solve(problem)

@@ -16,6 +16,7 @@ from ..planning import Reference
 from .dynamics import Dynamics
 from .gains import Gains
 from .motion import Motion
+from .slide import share_of_sliding
 
 PROGRESS_PULL = 10.0
 """Rate [1/s] at which progress is drawn to where the centre of mass is."""
@@ -61,8 +62,8 @@ def progress_rate(reference: Reference, sample: np.ndarray, dynamics: Dynamics) 
     speed = float(along @ dynamics.com_velocity) + PROGRESS_PULL * behind
     # whoever is off to the inside of a turn passes the plan's places sooner
     planned = float(along @ sample[1, columns["com"]]) - float(off @ sample[1, columns["along"]])
-    straight = float(along @ sample[0, columns["tangent"]]) ** 4  # 0 for skis across the track
-    rate = 1.0 + straight * (speed - planned) * planned / (planned * planned + CREEP * CREEP)
+    own = 1.0 - share_of_sliding(float(along @ sample[0, columns["tangent"]]))
+    rate = 1.0 + own * (speed - planned) * planned / (planned * planned + CREEP * CREEP)
     return min(max(rate, 0.0), FASTEST_RATE)
 
 

@@ -141,7 +141,7 @@ class Simulation:
     ) -> None:
         dynamics, columns, value = self.dynamics, self.reference.columns, command.sample[0]
         balance, model = self.controller.balance, self.model
-        ski_error = self._gauge.planned_error(value) if balance.replanned else followed
+        ski_error = self._gauge.planned_error(value) if balance.replanned or self.controller.slide.active else followed
         astray = dynamics.com - value[columns["com"]]
         *zero_moment_point, border = self._gauge.zero_moment_point(command, value[columns["normal"]])
         place = self.reference.interval(self.progress)

@@ -51,8 +51,12 @@ class Balance:
         self.push = np.zeros(3)
         self.divergent = 0.0
 
-    def update(self, progress: float, rate: float, sample: np.ndarray, edge_angle: np.ndarray) -> None:
-        """Measure, decide, and change the motion where it must be. `edge_angle` (2,) [rad] of the skis as they are."""
+    def update(
+        self, progress: float, rate: float, sample: np.ndarray, edge_angle: np.ndarray, sliding: float = 0.0
+    ) -> None:
+        """Measure, decide, and change the motion where it must be. `edge_angle` (2,) [rad] of the skis as they are;
+        `sliding` 0..1 says how far they are thrown across the track, where steering them moves nobody sideways.
+        """
         columns, steering = self._motion.columns, self.steering
         outside = self.observer.update()
         deviation = self._gauge.measure()
@@ -69,7 +73,10 @@ class Balance:
         off = math.sqrt(raw * raw + steering.offset * steering.offset + (steering.rate / omega) ** 2)
         x = min(max((off - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0), 1.0)
         self.blend = x * x * (3.0 - 2.0 * x)
+        self.blend *= 1.0 - sliding
         steering.update(self.blend * expected, omega, reach)
+        if sliding:
+            steering.fade(sliding)
         self.replanned = self.blend > 0.0 or abs(steering.offset) > 1e-9
         if self.replanned:
             planned = float(self._motion.value[columns["across"]] @ sample[2, columns["com"]])
