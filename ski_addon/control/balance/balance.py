@@ -12,15 +12,19 @@ from ..dynamics import Dynamics
 from ..motion import Motion
 from .deviation import Deviation, DeviationGauge
 from .observer import DisturbanceObserver
-from .preview import Preview
+from .preview import Preview, lean_offset
 from .regulator import Regulator
 from .replan import Replanner
 from .steering import Reach, Steering, acceleration_bounds
 
-FADE_FROM, FADE_TO = 0.015, 0.05
-"""Distance from the plan [m] over which re-planning fades in; below it the plan is simply followed."""
+BEGIN_FROM, BEGIN_TO = 0.025, 0.06
+"""Distance from the plan [m] over which re-planning fades in; below it the plan is followed as it is."""
+END_FROM, END_TO = 0.006, 0.02
+"""Distance from the plan [m] over which it fades out again."""
 PUSH_LASTS = 0.129
 """Time [s] for which a push is expected to go on."""
+SLIDING_ACCELERATION = 5.0
+"""Most acceleration [m/s^2] with which legs shift skis that slide across the track."""
 EDGE_MARGIN = 0.015
 """Distance [m] the load's middle keeps from the outermost bearing edges."""
 
@@ -55,14 +59,15 @@ class Balance:
         self, progress: float, rate: float, sample: np.ndarray, edge_angle: np.ndarray, sliding: float = 0.0
     ) -> None:
         """Measure, decide, and change the motion where it must be. `edge_angle` (2,) [rad] of the skis as they are;
-        `sliding` 0..1 says how far they are thrown across the track, where steering them moves nobody sideways.
+        `sliding` 0..1 says how far they are thrown across the track, where they are shifted, not steered.
         """
         columns, steering = self._motion.columns, self.steering
         outside = self.observer.update()
         deviation = self._gauge.measure()
-        omega, wanted = self.preview.at(progress, rate, steering.offset)
+        omega, even = self.preview.at(progress, rate, steering.offset)
+        wanted = lean_offset(even, deviation.planned_y, deviation.planned_h)
         push, tipping = self._felt_push(outside, deviation)
-        reach = self._reach(deviation, edge_angle)
+        reach = self._reach(deviation, edge_angle, sliding)
         raw = deviation.y + deviation.y_rate / omega - wanted
         expected = raw + PUSH_LASTS * push / omega
         self.margin = steering.capture_margin(raw, omega, reach)
@@ -70,18 +75,25 @@ class Balance:
         if not self._replans:
             return
         self._dynamics.outside = outside
-        off = math.sqrt(raw * raw + steering.offset * steering.offset + (steering.rate / omega) ** 2)
-        x = min(max((off - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0), 1.0)
-        self.blend = x * x * (3.0 - 2.0 * x)
-        self.blend *= 1.0 - sliding
+        self.blend = self._blend_after(expected, wanted, omega)
         steering.update(self.blend * expected, omega, reach)
-        if sliding:
-            steering.fade(sliding)
         self.replanned = self.blend > 0.0 or abs(steering.offset) > 1e-9
         if self.replanned:
             planned = float(self._motion.value[columns["across"]] @ sample[2, columns["com"]])
-            self._replanner.apply(self.blend, steering, deviation, planned, push, tipping)
+            self._replanner.apply(self.blend, steering, deviation, planned, push, tipping, 1.0 - sliding)
         steering.advance()
+
+    def _blend_after(self, expected: float, wanted: float, omega: float) -> float:
+        """Return how far to re-plan.
+
+        It begins late, when the load can no longer be shifted far enough by itself, and ends late, when the skier is
+        where the plan is right again: one who is faster than planned is off the plan where he should be.
+        """
+        steering = self.steering
+        line = steering.offset * steering.offset + (steering.rate / omega) ** 2
+        begun = _faded(math.sqrt(expected * expected + line), BEGIN_FROM, BEGIN_TO)
+        ended = _faded(math.sqrt(expected * expected + wanted * wanted + line), END_FROM, END_TO)
+        return max(begun, min(self.blend, ended))
 
     def _felt_push(self, outside: np.ndarray, deviation: Deviation) -> tuple[float, float]:
         """Return the sideways acceleration [m/s^2] that a push from outside gives the pendulum, and the one by which it
@@ -110,7 +122,7 @@ class Balance:
             return 0.0, tipping
         return (whole if abs(whole) < abs(straight) else straight), tipping
 
-    def _reach(self, deviation: Deviation, edge_angle: np.ndarray) -> Reach:
+    def _reach(self, deviation: Deviation, edge_angle: np.ndarray, sliding: float) -> Reach:
         left = right = 0.0
         for angle in edge_angle.tolist():
             bears_left, bears_right = edge_bearing(angle)
@@ -121,4 +133,12 @@ class Balance:
         speed = deviation.speed - self.steering.offset * deviation.turning
         centripetal = deviation.centripetal - self.steering.offset * deviation.turning * deviation.turning
         least, most = acceleration_bounds(abs(speed), centripetal)
+        least -= sliding * (least + SLIDING_ACCELERATION)
+        most -= sliding * (most - SLIDING_ACCELERATION)
         return Reach(-right_reach, left_reach, least, most)
+
+
+def _faded(value: float, low: float, high: float) -> float:
+    """Return 0 up to `low`, 1 from `high` on, and a smooth step between."""
+    x = min(max((value - low) / (high - low), 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)

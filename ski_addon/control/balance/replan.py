@@ -59,15 +59,15 @@ class Heading:
     acceleration: float
 
 
-def steered_heading(steering: Steering, deviation: Deviation) -> Heading:
-    """Return the direction of the steered line against the planned skis."""
+def steered_heading(steering: Steering, deviation: Deviation, grip: float = 1.0) -> Heading:
+    """Return the direction of the steered line against the planned skis; those without `grip` slide there unturned."""
     speed = max(deviation.speed - steering.offset * deviation.turning, SLOWEST)
     drift = steering.rate
     square = speed * speed + drift * drift
     turn = speed / square
     rate = steering.acceleration * turn
     acceleration = steering.jerk * turn - 2.0 * drift * steering.acceleration * rate / square
-    return Heading(math.atan2(drift, speed), rate, acceleration)
+    return Heading(grip * math.atan2(drift, speed), grip * rate, grip * acceleration)
 
 
 def measured_lean(steering: Steering, deviation: Deviation, push: float, planned: float) -> Lean:
@@ -130,15 +130,22 @@ class Replanner:
         self._width = model.skeleton.ski_width
 
     def apply(
-        self, blend: float, steering: Steering, deviation: Deviation, planned: float, push: float, tipping: float
+        self,
+        blend: float,
+        steering: Steering,
+        deviation: Deviation,
+        planned: float,
+        push: float,
+        tipping: float,
+        grip: float = 1.0,
     ) -> None:
         """Re-plan by `blend` (0..1).
 
         `planned` [m/s^2] is the plan's sideways acceleration at planned speed; `push` the one from outside and `tipping`
-        the one by which that turns the body over.
+        the one by which that turns the body over; skis turn into the steered direction with `grip` 0..1.
         """
         d = deviation
-        heading = steered_heading(steering, d)
+        heading = steered_heading(steering, d, grip)
         lean = measured_lean(steering, d, push, planned)
         self._move_com(blend, d, lean)
         self._move_skis(blend, steering, heading, lean, tipping)

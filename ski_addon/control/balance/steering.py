@@ -19,8 +19,6 @@ SPARE_ACCELERATION = 3.0
 """Sideways acceleration [m/s^2] kept for steering on top of what a hard turn of the plan takes."""
 FASTEST_TURNING = 3.0
 """Most turning speed of the skis [rad/s]."""
-FADE_TIME = 0.15
-"""Time [s] in which steering ends when the skis are thrown across the track."""
 MOST_JERK = 150.0
 """Most change of the sideways acceleration [m/s^3]: at 5 m/s from straight to the tightest turn in 40 ms."""
 REJOIN_FROM = 0.434
@@ -81,13 +79,6 @@ class Steering:
         self.acceleration += self.jerk * step
         self.rate += self.acceleration * step
         self.offset += self.rate * step
-
-    def fade(self, share: float) -> None:
-        """Let what was steered die away, the faster the nearer `share` is to 1."""
-        kept = 1.0 - min(share * self._step / FADE_TIME, 1.0)
-        self.offset, self.rate, self.acceleration, self.jerk = (
-            kept * value for value in (self.offset, self.rate, self.acceleration, self.jerk)
-        )
 
     def capture_margin(self, divergent: float, omega: float, reach: Reach) -> float:
         """Return how far [m] the divergent component is from what steering and load shift can still catch.
