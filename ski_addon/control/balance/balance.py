@@ -17,8 +17,10 @@ from .regulator import Regulator
 from .replan import Replanner
 from .steering import Reach, Steering, acceleration_bounds
 
-FADE_FROM, FADE_TO = 0.015, 0.05
-"""Distance from the plan [m] over which re-planning fades in; below it the plan is simply followed."""
+BEGIN_FROM, BEGIN_TO = 0.025, 0.06
+"""Distance from the plan [m] over which re-planning fades in; below it the plan is followed as it is."""
+END_FROM, END_TO = 0.006, 0.02
+"""Distance from the plan [m] over which it fades out again."""
 PUSH_LASTS = 0.129
 """Time [s] for which a push is expected to go on."""
 EDGE_MARGIN = 0.015
@@ -70,10 +72,7 @@ class Balance:
         if not self._replans:
             return
         self._dynamics.outside = outside
-        off = math.sqrt(raw * raw + steering.offset * steering.offset + (steering.rate / omega) ** 2)
-        x = min(max((off - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0), 1.0)
-        self.blend = x * x * (3.0 - 2.0 * x)
-        self.blend *= 1.0 - sliding
+        self.blend = (1.0 - sliding) * self._blend_after(expected, wanted, omega)
         steering.update(self.blend * expected, omega, reach)
         if sliding:
             steering.fade(sliding)
@@ -82,6 +81,18 @@ class Balance:
             planned = float(self._motion.value[columns["across"]] @ sample[2, columns["com"]])
             self._replanner.apply(self.blend, steering, deviation, planned, push, tipping)
         steering.advance()
+
+    def _blend_after(self, expected: float, wanted: float, omega: float) -> float:
+        """Return how far to re-plan.
+
+        It begins late, when the load can no longer be shifted far enough by itself, and ends late, when the skier is
+        where the plan is right again: one who is faster than planned is off the plan where he should be.
+        """
+        steering = self.steering
+        line = steering.offset * steering.offset + (steering.rate / omega) ** 2
+        begun = _faded(math.sqrt(expected * expected + line), BEGIN_FROM, BEGIN_TO)
+        ended = _faded(math.sqrt(expected * expected + wanted * wanted + line), END_FROM, END_TO)
+        return max(begun, min(self.blend, ended))
 
     def _felt_push(self, outside: np.ndarray, deviation: Deviation) -> tuple[float, float]:
         """Return the sideways acceleration [m/s^2] that a push from outside gives the pendulum, and the one by which it
@@ -122,3 +133,9 @@ class Balance:
         centripetal = deviation.centripetal - self.steering.offset * deviation.turning * deviation.turning
         least, most = acceleration_bounds(abs(speed), centripetal)
         return Reach(-right_reach, left_reach, least, most)
+
+
+def _faded(value: float, low: float, high: float) -> float:
+    """Return 0 up to `low`, 1 from `high` on, and a smooth step between."""
+    x = min(max((value - low) / (high - low), 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
