@@ -12,7 +12,7 @@ from ..dynamics import Dynamics
 from ..motion import Motion
 from .deviation import Deviation, DeviationGauge
 from .observer import DisturbanceObserver
-from .preview import Preview
+from .preview import Preview, lean_offset
 from .regulator import Regulator
 from .replan import Replanner
 from .steering import Reach, Steering, acceleration_bounds
@@ -62,7 +62,8 @@ class Balance:
         columns, steering = self._motion.columns, self.steering
         outside = self.observer.update()
         deviation = self._gauge.measure()
-        omega, wanted = self.preview.at(progress, rate, steering.offset)
+        omega, even = self.preview.at(progress, rate, steering.offset)
+        wanted = lean_offset(even, deviation.planned_y, deviation.planned_h)
         push, tipping = self._felt_push(outside, deviation)
         reach = self._reach(deviation, edge_angle)
         raw = deviation.y + deviation.y_rate / omega - wanted

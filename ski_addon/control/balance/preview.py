@@ -102,3 +102,12 @@ def _bounded_answer(pull: np.ndarray, omega: np.ndarray, step: float, rate: floa
         xi = middle + (xi - middle) * fade
         out[..., i] = xi
     return out
+
+
+def lean_offset(even: float, y: float, h: float) -> float:
+    """Return the sideways offset [m] off the planned `y` of a body on a leg of fixed length.
+
+    `even` [m] is the offset of a pendulum of constant height `h` [m]: both have the same tangent of the lean.
+    """
+    whole = y + even
+    return math.sqrt((y * y + h * h) / (whole * whole + h * h)) * whole - y
