@@ -41,6 +41,11 @@ class SyntheticRecording:
     torque_ratio: np.ndarray
     ski_error: np.ndarray
     com_error: np.ndarray
+    push_force: np.ndarray
+    track_offset: np.ndarray
+    steering_offset: np.ndarray
+    capture_margin: np.ndarray
+    zmp_margin: np.ndarray
 
     def save(self, path: Path) -> None:
         """Write the arrays as a stand-in for a recording."""
@@ -93,4 +98,9 @@ def synthetic_recording(
         torque_ratio=np.abs(swing)[:, None] * np.linspace(0.1, 0.8, len(HINGES)),
         ski_error=0.002 * np.abs(swing),
         com_error=0.001 * np.abs(swing),
+        push_force=np.zeros((len(time), 3)),
+        track_offset=np.stack((0.2 * swing, 0.15 * swing), axis=1),
+        steering_offset=0.19 * swing,
+        capture_margin=0.4 - 0.3 * np.abs(swing),
+        zmp_margin=0.05 + 0.04 * swing,
     )

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 
 from . import series
-from .style import INK, LEFT, QUIET, RIGHT, SPEED_MAP, THIRD, curve, draw_bands, finish
+from .style import ALARM, INK, LEFT, QUIET, RIGHT, SPEED_MAP, THIRD, curve, draw_bands, finish
 
 if TYPE_CHECKING:
     from ..simulation import Recording
@@ -29,7 +29,7 @@ def draw_track(axes: Any, recording: Recording) -> Any:
     axes.plot(*position[0], "o", color=INK, markersize=5)
     axes.annotate("start", position[0], xytext=(0, 8), textcoords="offset points", ha="center", fontsize=8.5)
     fell = recording.header["status"] != "finished"
-    axes.plot(*position[-1], "X" if fell else "s", color="#C1121F" if fell else INK, markersize=9 if fell else 5)
+    axes.plot(*position[-1], "X" if fell else "s", color=ALARM if fell else INK, markersize=9 if fell else 5)
     axes.annotate(
         recording.header["status"] if fell else "end",
         position[-1],
@@ -105,6 +105,38 @@ def draw_errors(axes: Any, recording: Recording) -> None:
     finish(axes, "Distance from the plan", "mm")
 
 
+def draw_margins(axes: Any, recording: Recording) -> None:
+    """How far the skier is from losing balance, and the load from the border of the bearing edges; pushes in red."""
+    draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)
+    _draw_pushes(axes, recording)
+    axes.axhline(0, color=INK, linewidth=1.0, linestyle=(0, (2, 2)))
+    capture = f"capture margin, {_least_mm(recording.capture_margin)} at least"
+    curve(axes, recording.time, 1000 * recording.capture_margin, INK, capture, linewidth=1.6)
+    border = f"load from the edges' border, {_least_mm(recording.zmp_margin)} at least"
+    curve(axes, recording.time, 1000 * recording.zmp_margin, THIRD, border)
+    finish(axes, "Balance: what is left", "mm", columns=2)
+
+
+def draw_offsets(axes: Any, recording: Recording) -> None:
+    """Where skis and centre of mass are across the track, and the line the skis are steered along; pushes in red."""
+    draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)
+    _draw_pushes(axes, recording)
+    axes.axhline(0, color=QUIET, linewidth=0.8)
+    curve(axes, recording.time, 1000 * recording.track_offset[:, 0], RIGHT, "skis")
+    curve(axes, recording.time, 1000 * recording.track_offset[:, 1], INK, "centre of mass")
+    steered = {"linewidth": 0.9, "linestyle": (0, (4, 2))}
+    curve(axes, recording.time, 1000 * recording.steering_offset, LEFT, "steered line", **steered)
+    finish(axes, "Off the plan, left is positive", "mm")
+
+
+def _draw_pushes(axes: Any, recording: Recording) -> None:
+    """Shade the times at which something pushes the skier."""
+    pushed = np.any(recording.push_force != 0.0, axis=1).astype(int)
+    for band in series.phase_bands(recording.time, pushed):
+        if band.phase:
+            axes.axvspan(band.start, band.end, color=ALARM, alpha=0.15, linewidth=0, zorder=0.5)
+
+
 def draw_speed(axes: Any, recording: Recording) -> None:
     """Speed along the track."""
     draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)
@@ -113,6 +145,10 @@ def draw_speed(axes: Any, recording: Recording) -> None:
     room = max(0.5, 0.15 * (high - low))
     axes.set_ylim(max(0.0, low - room), high + room)
     finish(axes, "Speed", "m/s")
+
+
+def _least_mm(values: np.ndarray) -> str:
+    return f"{-1000 * _largest(-values):.3g} mm"
 
 
 def _peak_mm(error: np.ndarray) -> str:

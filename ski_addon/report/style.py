@@ -11,6 +11,8 @@ from .series import Band, thinned
 LEFT, RIGHT, THIRD, INK, QUIET = "#0072B2", "#D55E00", "#009E73", "#22303C", "#9AA5B1"
 """Left ski, right ski, a third curve, text, and what stands back (colours that also colour-blind people tell apart)."""
 TRANSITION = "#E8ECF1"
+ALARM = "#C1121F"
+"""Falls and pushes."""
 SPEED_MAP = "viridis"
 
 RC: dict[Any, Any] = {

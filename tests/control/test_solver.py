@@ -43,7 +43,8 @@ def dense(formulation: Formulation, problem: Problem) -> NaiveProgram:
 @functools.cache
 def bank(weak: bool) -> tuple[Formulation, tuple[Recorded, ...]]:
     """Programs at recorded states of a run at 12 m/s and 42 degrees of lean, a strong skier's or a weak one's."""
-    changes = WEAK if weak else FAST
+    # a controller that feels pushes would take the jumps between the states for some
+    changes = WEAK if weak else {**FAST, "technique.balance": "tracking"}
     recording, simulation = simulated("paper_main", changes), start_simulation(planned("paper_main", changes))
     controller, dynamics = simulation.controller, simulation.dynamics
     solve, recorded = controller.solver.solve, []

@@ -43,6 +43,8 @@ def test_all_plots_and_the_name_of_the_run_are_there(figure):
         "Fig. 15",
         "torques",
         "Distance",
+        "Balance",
+        "Off the plan",
     ):
         panel(figure, words)
     assert "Test run" in texts(figure)

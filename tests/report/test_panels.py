@@ -26,6 +26,8 @@ OVER_TIME = (
     panels.draw_force_split,
     panels.draw_torques,
     panels.draw_errors,
+    panels.draw_margins,
+    panels.draw_offsets,
 )
 
 
@@ -163,6 +165,34 @@ def test_errors_are_the_recorded_ones_in_millimetres(recording):
     np.testing.assert_allclose(found["skis"], 1000 * recording.ski_error)
     np.testing.assert_allclose(found["centre of mass"], 1000 * recording.com_error)
     assert axes.get_ylabel() == "mm" and axes.get_ylim()[0] == 0.0
+
+
+def test_margins_are_the_recorded_ones_with_their_least_in_the_legend(recording):
+    low = recording.capture_margin.copy()
+    low[200] = -0.0375
+    axes = drawn(panels.draw_margins, dataclasses.replace(recording, capture_margin=low))
+    found = curves(axes)
+    np.testing.assert_allclose(found["capture margin, -37.5 mm at least"], 1000 * low)
+    np.testing.assert_allclose(found["load from the edges' border, 10 mm at least"], 1000 * recording.zmp_margin)
+    assert axes.get_ylim()[0] < -37.5 and axes.get_ylabel() == "mm"
+
+
+def test_offsets_are_the_recorded_ones(recording):
+    found = curves(drawn(panels.draw_offsets, recording))
+    np.testing.assert_allclose(found["skis"], 1000 * recording.track_offset[:, 0])
+    np.testing.assert_allclose(found["centre of mass"], 1000 * recording.track_offset[:, 1])
+    np.testing.assert_allclose(found["steered line"], 1000 * recording.steering_offset)
+
+
+@pytest.mark.parametrize("draw", [panels.draw_margins, panels.draw_offsets])
+def test_pushes_are_shaded_while_they_last(recording, draw):
+    push = np.zeros((len(recording.time), 3))
+    push[300:350, 1] = 150.0
+    push[700:720, 2] = -20.0
+    axes = drawn(draw, dataclasses.replace(recording, push_force=push))
+    red = [patch for patch in axes.patches if patch.get_facecolor()[:3] == to_rgb(style.ALARM)]
+    boxes = [patch.get_extents().transformed(axes.transData.inverted()) for patch in red]
+    assert sorted((round(box.x0, 3), round(box.x1, 3)) for box in boxes) == [(3.0, 3.5), (7.0, 7.2)]
 
 
 def test_track_is_drawn_through_its_places_with_speed_as_colour(recording):

@@ -130,6 +130,13 @@ def test_weak_skier_falls_and_the_reason_is_a_muscle():
     assert recording.torque_ratio.max() <= 1.0 + 1e-12
 
 
+def test_weak_skier_who_steers_stays_up():
+    """Where a plan asks too much, leaving it saves him."""
+    recording = simulated("paper_main", {**WEAK, "technique.balance": "steering"})
+    assert recording.status == "finished" and recording.solver_status.max() == 0
+    assert 0.1 < np.abs(recording.steering_offset).max() < 3.0
+
+
 def test_fall_is_kept_up_to_where_it_happened(tmp_path):
     recording = Recording.load(simulated("paper_main", WEAK).save(tmp_path / "fell.npz"))
     detail = recording.header["status_detail"]
