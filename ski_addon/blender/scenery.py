@@ -114,7 +114,7 @@ def _hazy_material(name: str, colour: str) -> bpy.types.Material:
 
 
 def build_mountains(centre: Array, collection: bpy.types.Collection, seed: int = 5) -> bpy.types.Object:
-    """Return a far ring of mountains round `centre` (3,) [m, world]."""
+    """Return a far ring of mountains round `centre` (3,) [m, world], which leaves the slope in the sun however low."""
     random = np.random.default_rng(seed)
     count, rows = 180, 8
     angle = 2.0 * np.pi * np.arange(count + 1) / count
@@ -130,4 +130,5 @@ def build_mountains(centre: Array, collection: bpy.types.Collection, seed: int =
     obj = mesh_object("Mountains", vertices.reshape(-1, 3), grid_faces(rows, count + 1), collection)
     obj.data.polygons.foreach_set("use_smooth", np.zeros(len(obj.data.polygons), dtype=bool))
     obj.data.materials.append(_hazy_material("Ski mountain", "c3d0de"))
+    obj.visible_shadow = False
     return obj

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from ..simulation.recording import Recording
 
 
+SUN = 120.0, 24.0
+"""Azimuth and height of the sun [deg]."""
 EXPOSURE = 0.8
 """Exposure [stops] that makes sunny snow look sunny."""
 
@@ -40,9 +42,17 @@ def add_collection(scene: bpy.types.Scene, name: str) -> bpy.types.Collection:
 
 
 def build_stage(
-    recording: Recording, spec: RunSpec, scene: bpy.types.Scene, *, sun_azimuth_deg: float = 120.0, trees: bool = True
+    recording: Recording,
+    spec: RunSpec,
+    scene: bpy.types.Scene,
+    *,
+    sun_deg: tuple[float, float] = SUN,
+    trees: bool = True,
 ) -> tuple[Skeleton, Terrain]:
-    """Set `scene` up round the track of `recording` and return its skeleton and terrain; trees may be left out."""
+    """Set `scene` up round the track of `recording` and return its skeleton and terrain; trees may be left out.
+
+    `sun_deg` are azimuth and height of the sun, see `build_sun`.
+    """
     skeleton, terrain = build_skeleton(spec.skier), build_terrain(spec.slope)
     track = np.asarray(recording.track_position)
     build_slope(terrain, track, add_collection(scene, "Slope"))
@@ -53,7 +63,7 @@ def build_stage(
     if trees:
         build_trees(terrain, track, scenery)
     build_mountains(track.mean(axis=0), scenery)
-    build_sun(add_collection(scene, "Light"), sun_azimuth_deg)
+    build_sun(add_collection(scene, "Light"), *sun_deg)
     build_sky(scene)
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"

@@ -47,7 +47,8 @@ def render_strobe(
     scene = empty_file()
     view = choose_view(recording, spec, instants, stop=stop)
     azimuth, descent = way(recording, view.time)
-    skeleton, terrain = build_stage(recording, spec, scene, sun_azimuth_deg=azimuth + view.sun_deg, trees=False)
+    sun = azimuth + view.sun_deg, view.sun_height_deg
+    skeleton, terrain = build_stage(recording, spec, scene, sun_deg=sun, trees=False)
     figures = add_collection(scene, "Instants")
     rig = build_rig(skeleton, scene)
     points = [leave_copies(rig, figures) for _ in posed(rig, recording, skeleton, view.time)]

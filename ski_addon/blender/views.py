@@ -30,14 +30,15 @@ class View:
     """Moments `time` (m,) [s after the start] and the camera that shows them.
 
     `azimuth_deg` is where the camera stands, from the direction of the skier's way (0 is ahead, 90 is on the left),
-    `height_deg` over the slope's plane along that way, `sun_deg` where the sun stands, from the same direction; `lens`
-    [mm]; `headroom` [m] of what is to be seen over the highest skier.
+    `height_deg` over the slope's plane along that way, `sun_deg` where the sun stands, from the same direction,
+    `sun_height_deg` over the horizon; `lens` [mm]; `headroom` [m] of what is to be seen over the highest skier.
     """
 
     time: Array
     azimuth_deg: float = -12.0
     height_deg: float = 15.0
     sun_deg: float = 100.0
+    sun_height_deg: float = 24.0
     lens: float = 30.0
     headroom: float = 7.0
 
@@ -46,14 +47,18 @@ def choose_view(recording: Recording, spec: RunSpec, instants: int, *, stop: boo
     """Return the view of `recording` that suits its course, with `instants` moments; with `stop` that of its end."""
     course = spec.course
     if stop:
-        return View(stop_times(recording, instants), 35.0, 13.0, 120.0, 40.0, 3.0)
+        times = stop_times(recording, instants)
+        return View(times, azimuth_deg=35.0, height_deg=13.0, sun_deg=120.0, lens=40.0, headroom=3.0)
     if course.kind == "bumps" and course.turn_amplitude == 0.0:
         wave = {"bumps": 2.0 * spec.slope.bump_width, "moguls": spec.slope.mogul_spacing}.get(spec.slope.kind, 15.0)
-        return View(middle_times(recording, instants, WAVES_SHOWN * wave), 78.0, 7.0, 145.0, 50.0, 0.5)
+        times = middle_times(recording, instants, WAVES_SHOWN * wave)
+        return View(times, azimuth_deg=75.0, height_deg=5.0, sun_deg=25.0, sun_height_deg=13.0, lens=50.0, headroom=0.3)
     if course.kind == "bumps":
-        return View(turn_times(recording, instants, GATE_TURNS_SHOWN), 28.0, 16.0, 110.0, 40.0, 2.0)
+        times = turn_times(recording, instants, GATE_TURNS_SHOWN)
+        return View(times, azimuth_deg=28.0, height_deg=16.0, sun_deg=110.0, lens=40.0, headroom=2.0)
     if course.kind == "gates":
-        return View(turn_times(recording, instants, GATE_TURNS_SHOWN), -10.0, 15.0, 100.0, 35.0, 4.0)
+        times = turn_times(recording, instants, GATE_TURNS_SHOWN)
+        return View(times, azimuth_deg=-33.0, height_deg=14.0, sun_deg=80.0, lens=40.0, headroom=2.5)
     return View(turn_times(recording, instants, TURNS_SHOWN))
 
 
