@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from ..spec import RunSpec
     from .rig import Rig
 
-SUN_BESIDE = 100.0
-"""Azimuth of the sun beside the fall line [deg]."""
+SUN_BESIDE = 100.0, 24.0
+"""Azimuth, beside the fall line, and height of the sun [deg]."""
 
 
 def render_closeups(
@@ -38,7 +38,7 @@ def render_closeups(
     from .stage import add_collection, build_stage, empty_file
 
     scene = empty_file()
-    skeleton, _ = build_stage(recording, spec, scene, sun_azimuth_deg=SUN_BESIDE)
+    skeleton, _ = build_stage(recording, spec, scene, sun_deg=SUN_BESIDE)
     rig = build_rig(skeleton, scene)
     set_render(scene, size, samples)
     moments = turn_apexes(recording)

@@ -62,12 +62,15 @@ def linear_colour(hex_colour: str) -> tuple[float, float, float, float]:
 
 def paint_material(name: str) -> bpy.types.Material:
     """Return the material of the palette entry `name`, made on first use and kept after that."""
-    full_name = PREFIX + name.replace("_", " ")
-    existing = bpy.data.materials.get(full_name)
+    return painted(PREFIX + name.replace("_", " "), PALETTE[name])
+
+
+def painted(name: str, paint: Paint) -> bpy.types.Material:
+    """Return the material called `name`, which looks like `paint` where it is made on first use."""
+    existing = bpy.data.materials.get(name)
     if existing is not None:
         return existing
-    paint = PALETTE[name]
-    material, shader = new_material(full_name)
+    material, shader = new_material(name)
     colour = linear_colour(paint.colour)
     shader.inputs["Base Color"].default_value = colour
     shader.inputs["Roughness"].default_value = paint.roughness

@@ -14,16 +14,23 @@ from .slope import grid_faces, mesh_object
 TREE_CORRIDOR = (16.0, 70.0)
 """Least and most distance of a tree from the track [m]."""
 TREE_SPACING = 7.0
+BRANCH = 2.5
+"""How far branches reach [m]."""
 MOUNTAIN_DISTANCE = 1900.0
 
 
-def build_trees(terrain: Terrain, track: Array, collection: bpy.types.Collection, seed: int = 3) -> bpy.types.Object:
-    """Return one object with all fir trees on both sides of `track` (n, 3) [m, world], easy to hide or delete."""
+def build_trees(
+    terrain: Terrain, track: Array, collection: bpy.types.Collection, seed: int = 3, clear: Array | None = None
+) -> bpy.types.Object:
+    """Return one object with all fir trees on both sides of `track` (n, 3) [m, world], easy to hide or delete.
+
+    `clear` (k, 2) [m, world] is a convex outline, counter-clockwise seen from above, in which none may stand.
+    """
     fir = _fir()
     vertices: list[Array] = []
     faces: list[tuple[int, ...]] = []
     materials: list[str] = []
-    for x, y, size, turn in _tree_places(track, seed):
+    for x, y, size, turn in _tree_places(track, seed, clear):
         c, s = size * np.cos(turn), size * np.sin(turn)
         foot = (x, y, float(terrain.height(x, y)) - 0.2)
         first = len(vertices) * len(fir.vertices)
@@ -39,7 +46,7 @@ def build_trees(terrain: Terrain, track: Array, collection: bpy.types.Collection
     return trees
 
 
-def _tree_places(track: Array, seed: int) -> list[tuple[float, float, float, float]]:
+def _tree_places(track: Array, seed: int, clear: Array | None) -> list[tuple[float, float, float, float]]:
     """Return (x, y, size, turn) of trees scattered near `track`, denser away from it."""
     random = np.random.default_rng(seed)
     low, high = track[:, :2].min(axis=0) - 70.0, track[:, :2].max(axis=0) + 70.0
@@ -50,12 +57,22 @@ def _tree_places(track: Array, seed: int) -> list[tuple[float, float, float, flo
     nearest, furthest = TREE_CORRIDOR
     share = np.clip((distance - nearest) / (furthest - nearest), 0.0, 1.0)
     kept = (distance > nearest) & (random.uniform(size=count) < 0.12 + 0.55 * share)
+    if clear is not None:
+        kept &= ~_within_outline(places, clear)
     sizes = random.uniform(0.7, 1.5, count)
     turns = random.uniform(0.0, 2.0 * np.pi, count)
     return [
         (float(x), float(y), float(s), float(t))
         for (x, y), s, t in zip(places[kept], sizes[kept], turns[kept], strict=True)
     ]
+
+
+def _within_outline(places: Array, outline: Array) -> Array:
+    """Return whether `places` (n, 2) lie within a convex, counter-clockwise `outline` (k, 2), or a branch outside."""
+    side = np.roll(outline, -1, axis=0) - outline
+    outward = np.stack((side[:, 1], -side[:, 0]), axis=1) / np.linalg.norm(side, axis=1, keepdims=True)
+    beyond = np.einsum("nkc,kc->nk", places[:, None] - outline[None], outward)
+    return np.asarray((beyond < BRANCH).all(axis=1))
 
 
 def _fir() -> Part:
@@ -97,7 +114,7 @@ def _hazy_material(name: str, colour: str) -> bpy.types.Material:
 
 
 def build_mountains(centre: Array, collection: bpy.types.Collection, seed: int = 5) -> bpy.types.Object:
-    """Return a far ring of mountains round `centre` (3,) [m, world]."""
+    """Return a far ring of mountains round `centre` (3,) [m, world], which leaves the slope in the sun however low."""
     random = np.random.default_rng(seed)
     count, rows = 180, 8
     angle = 2.0 * np.pi * np.arange(count + 1) / count
@@ -113,4 +130,5 @@ def build_mountains(centre: Array, collection: bpy.types.Collection, seed: int =
     obj = mesh_object("Mountains", vertices.reshape(-1, 3), grid_faces(rows, count + 1), collection)
     obj.data.polygons.foreach_set("use_smooth", np.zeros(len(obj.data.polygons), dtype=bool))
     obj.data.materials.append(_hazy_material("Ski mountain", "c3d0de"))
+    obj.visible_shadow = False
     return obj

@@ -1,4 +1,7 @@
-"""The tracks that the skis leave: a groove between two small ridges of pushed snow, laid on the slope."""
+"""The tracks that the skis leave: a groove between two small ridges of pushed snow, laid on the slope.
+
+A ski that skids sweeps a band as wide as it lies across its way.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,8 @@ if TYPE_CHECKING:
 
 SPACING = 0.10
 """Distance between cross sections [m]."""
+CARVES = np.deg2rad(4.0)
+"""A ski that points this little beside its way still carves [rad]."""
 # across the track, in half widths of the ski; height [m]; how much of the height grows with edging
 _PROFILE = (
     (-3.2, -0.010, 0.0),
@@ -42,27 +47,39 @@ def ski_paths(recording: Recording, skeleton: Skeleton) -> list[tuple[Array, Arr
 
 
 def groove_vertices(
-    place: Array, left: Array, edge: Array, terrain: Terrain, half_width: float, seed: int = 0
+    place: Array, left: Array, edge: Array, terrain: Terrain, half_width: float, half_length: float = 0.0, seed: int = 0
 ) -> Array:
-    """Return vertices (m, k, 3) of the groove of a ski of `half_width` [m] at `place` (m, 3) [m, world].
+    """Return vertices (m, k, 3) of the track of a ski of `half_width` and `half_length` [m] at `place` (m, 3) [m].
 
     `left` (m, 3) points across the ski and `edge` (m,) [rad] is its edge angle: an edged ski cuts a narrower groove on
-    the edge's side and pushes up more snow.
+    the edge's side and pushes up more snow. A ski that points elsewhere than it goes leaves a band.
     """
     normal = terrain.normal(place[:, 0], place[:, 1])
-    across = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
+    ski_left = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
+    across = _across_the_way(place, normal, ski_left)
+    turned = np.arccos(np.clip(np.sum(across * ski_left, axis=1), 0.0, 1.0))
+    skid = np.sin(np.maximum(turned - CARVES, 0.0))
     lean = np.clip(np.abs(edge) / np.deg2rad(30.0), 0.0, 1.0)
     shift = np.sign(edge) * lean * 0.5 * half_width
     rough = _roughness(len(place), seed)
     width = half_width * (1.0 - 0.35 * lean)
     rows = []
     for column, (share, height, grows) in enumerate(_PROFILE):
-        side = shift + share * width
+        side = shift + share * width + np.sign(share) * skid * half_length
         point = place + side[:, None] * across
         point[:, 2] = terrain.height(point[:, 0], point[:, 1])
         rise = height * (1.0 + grows * (lean - 0.4)) * np.where(grows > 0, rough[:, column], 1.0)
         rows.append(point + rise[:, None] * normal)
     return np.stack(rows, axis=1)
+
+
+def _across_the_way(place: Array, normal: Array, ski_left: Array) -> Array:
+    """Return unit vectors (m, 3) in the surface, square to the way along `place`; the ski's own where it stands."""
+    if len(place) < 2:
+        return ski_left
+    across = np.cross(normal, np.gradient(place, axis=0))
+    moves = np.linalg.norm(across, axis=1, keepdims=True) > 0.1 * SPACING
+    return normalized(np.where(moves, across, ski_left))
 
 
 def _roughness(count: int, seed: int) -> Array:
@@ -79,7 +96,8 @@ def build_ski_tracks(
     """Return the two new track meshes of `recording`."""
     tracks = []
     for side, (place, left, edge) in zip("LR", ski_paths(recording, skeleton), strict=True):
-        vertices = groove_vertices(place, left, edge, terrain, 0.5 * skeleton.ski_width, seed=ord(side))
+        size = 0.5 * skeleton.ski_width, 0.5 * skeleton.ski_length
+        vertices = groove_vertices(place, left, edge, terrain, *size, seed=ord(side))
         rows, columns = vertices.shape[:2]
         faces = grid_faces(rows, columns)
         obj = mesh_object(f"Ski track {side}", vertices.reshape(-1, 3), faces, collection)

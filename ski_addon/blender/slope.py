@@ -9,10 +9,11 @@ import numpy as np
 
 from ..frames import Array
 from ..terrain import Terrain
+from .ground_mesh import ground_mesh
 from .materials import linear_colour, new_material
 
-STEP = 4.0
-"""Size of the slope's faces near the track [m]."""
+ROOT = 8.0
+"""Size of the slope's faces near the track where the ground is flat [m]; they are cut where it is not."""
 MARGIN = 40.0
 FAR, FAR_UPHILL = (120.0, 500.0, 2500.0), (60.0, 160.0)
 """How far the slope reaches beyond the margin round the track [m]; uphill it ends in a crest."""
@@ -21,20 +22,26 @@ FAR, FAR_UPHILL = (120.0, 500.0, 2500.0), (60.0, 160.0)
 def build_slope(
     terrain: Terrain, track: Array, collection: bpy.types.Collection, *, far: tuple[float, ...] = FAR
 ) -> bpy.types.Object:
-    """Return a new mesh of `terrain` round `track` (n, 3) [m, world]: fine near it, coarse out to `far` [m]."""
+    """Return a new mesh of `terrain` round `track` (n, 3) [m, world]: fine near it, coarse out to `far` [m].
+
+    Bumps, moguls and waves are followed closely near the track (see `ground_mesh`). Without `far` the mesh ends where
+    the terrain's known ground does; with it, the ground beyond is drawn too.
+    """
     uphill = FAR_UPHILL if far else ()
-    x, y = _places(track[:, 0], uphill, far), _places(track[:, 1], far, far)
-    grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
-    height = terrain.height(grid_x, grid_y)
-    vertices = np.stack((grid_x, grid_y, height), axis=-1).reshape(-1, 3)
-    obj = mesh_object("Slope", vertices, grid_faces(len(x), len(y)), collection)
+    lines = (
+        _lines(track[:, 0], terrain.extent[:2], uphill, far),
+        _lines(track[:, 1], terrain.extent[2:], far, far),
+    )
+    obj = mesh_object("Slope", *ground_mesh(terrain.height, lines, track), collection)
     obj.data.materials.append(snow_material())
     return obj
 
 
-def _places(values: Array, before: tuple[float, ...], beyond: tuple[float, ...]) -> Array:
-    low, high = float(values.min()) - MARGIN, float(values.max()) + MARGIN
-    near = np.linspace(low, high, int(np.ceil((high - low) / STEP)) + 1)
+def _lines(values: Array, known: tuple[float, float], before: tuple[float, ...], beyond: tuple[float, ...]) -> Array:
+    """Return where roots of the mesh end [m] along one axis: evenly within the margin and the `known` ground."""
+    low = max(float(values.min()) - MARGIN, known[0])
+    high = min(float(values.max()) + MARGIN, known[1])
+    near = np.linspace(low, high, int(np.ceil((high - low) / ROOT)) + 1)
     return np.concatenate((low - np.array(before)[::-1], near, high + np.array(beyond)))
 
 

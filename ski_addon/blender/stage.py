@@ -1,4 +1,4 @@
-"""A fresh file with everything a run needs to be looked at: slope, tracks, trees, light."""
+"""A fresh file with everything a run needs to be looked at: slope, tracks, gates, trees, light."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from ..body import Skeleton, build_skeleton
 from ..spec import RunSpec
 from ..terrain import Terrain, build_terrain
+from .gates import build_gates
 from .light import build_sky, build_sun
 from .scenery import build_mountains, build_trees
 from .ski_tracks import build_ski_tracks
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from ..simulation.recording import Recording
 
 
+SUN = 120.0, 24.0
+"""Azimuth and height of the sun [deg]."""
 EXPOSURE = 0.8
 """Exposure [stops] that makes sunny snow look sunny."""
 
@@ -39,17 +42,28 @@ def add_collection(scene: bpy.types.Scene, name: str) -> bpy.types.Collection:
 
 
 def build_stage(
-    recording: Recording, spec: RunSpec, scene: bpy.types.Scene, *, sun_azimuth_deg: float = 120.0
+    recording: Recording,
+    spec: RunSpec,
+    scene: bpy.types.Scene,
+    *,
+    sun_deg: tuple[float, float] = SUN,
+    trees: bool = True,
 ) -> tuple[Skeleton, Terrain]:
-    """Set `scene` up round the track of `recording` and return its skeleton and terrain."""
+    """Set `scene` up round the track of `recording` and return its skeleton and terrain; trees may be left out.
+
+    `sun_deg` are azimuth and height of the sun, see `build_sun`.
+    """
     skeleton, terrain = build_skeleton(spec.skier), build_terrain(spec.slope)
     track = np.asarray(recording.track_position)
     build_slope(terrain, track, add_collection(scene, "Slope"))
     build_ski_tracks(recording, skeleton, terrain, add_collection(scene, "Ski tracks"))
+    if spec.course.kind == "gates":
+        build_gates(spec, terrain, add_collection(scene, "Gates"))
     scenery = add_collection(scene, "Scenery")
-    build_trees(terrain, track, scenery)
+    if trees:
+        build_trees(terrain, track, scenery)
     build_mountains(track.mean(axis=0), scenery)
-    build_sun(add_collection(scene, "Light"), sun_azimuth_deg)
+    build_sun(add_collection(scene, "Light"), *sun_deg)
     build_sky(scene)
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"

@@ -37,6 +37,16 @@ def test_the_slope_is_the_terrain(core, scene, recording, terrain) -> None:
     assert [material.name for material in slope.data.materials] == ["Ski snow"]
 
 
+def test_the_slope_of_known_ground_ends_with_it_in_the_user_s_scene(core, scene) -> None:
+    grid = core("terrain").HeightGrid(-0.2 * np.arange(60.0)[:, None] + np.zeros((1, 20)), 1.0, (0.0, -10.0))
+    track = np.column_stack((np.linspace(5.0, 55.0, 100), np.zeros(100), np.zeros(100)))
+    slope = core("blender.slope").build_slope
+    near, wide = places(slope(grid, track, scene.collection, far=())), places(slope(grid, track, scene.collection))
+    assert np.all(grid.contains(near[:, 0], near[:, 1]))
+    np.testing.assert_allclose([near[:, 0].max(), near[:, 1].min()], [59.0, -10.0], atol=1e-5)
+    assert wide[:, 0].max() > 2000.0  # a picture's goes to the horizon
+
+
 def test_the_slope_reaches_round_the_whole_track(core, scene, recording, terrain) -> None:
     slope = places(core("blender.slope").build_slope(terrain, recording.track_position, scene.collection, far=()))
     track = recording.track_position
@@ -51,9 +61,9 @@ def test_tracks_follow_the_skis(core, scene, recording, terrain) -> None:
     tracks = core("blender.ski_tracks").build_ski_tracks(recording, skeleton, terrain, scene.collection)
     position, _ = core("body").forward_kinematics(skeleton, recording.qpos[::500])
     for track, name in zip(tracks, ("ski.L", "ski.R"), strict=True):
-        vertices = places(track)
+        middle = places(track).reshape(-1, 6, 3)[:, 2:4].mean(axis=1)
         for ski in position[:, skeleton.body(name)]:
-            assert np.min(np.linalg.norm(vertices[:, :2] - ski[:2], axis=1)) < 0.15
+            assert np.min(np.linalg.norm(middle[:, :2] - ski[:2], axis=1)) < 0.15
 
 
 def test_tracks_look_up(core, scene, recording, terrain) -> None:
@@ -62,6 +72,20 @@ def test_tracks_look_up(core, scene, recording, terrain) -> None:
     )
     for track in tracks:
         assert np.mean([polygon.normal.z > 0.2 for polygon in track.data.polygons]) > 0.98
+
+
+@pytest.mark.parametrize(("slip_deg", "width"), [(0.0, 0.1), (2.0, 0.1), (30.0, 0.9), (90.0, 1.7)])
+def test_a_skidding_ski_leaves_a_band_as_wide_as_it_lies_across(core, scene, terrain, slip_deg, width) -> None:
+    x = np.linspace(0.0, 5.0, 51)
+    way = np.stack((x, 0.0 * x, terrain.height(x, 0.0 * x)), axis=1)
+    slip, normal = np.radians(slip_deg), terrain.normal(0.0, 0.0)
+    ahead = np.cross([0.0, 1.0, 0.0], normal)
+    left = np.tile(np.cos(slip) * np.array([0.0, 1.0, 0.0]) - np.sin(slip) * ahead, (51, 1))
+    groove = core("blender.ski_tracks").groove_vertices(way, left, 0.0 * x, terrain, 0.035, 0.85)
+    floor = np.linalg.norm(groove[:, 3] - groove[:, 2], axis=1)
+    np.testing.assert_allclose(floor, width, atol=0.09)
+    above = groove[..., 2] - terrain.height(groove[..., 0], groove[..., 1])
+    assert -0.02 < above.min() < 0.0 < above.max() < 0.06
 
 
 def test_the_same_tracks_come_out_every_time(core, scene, recording, terrain) -> None:
@@ -81,6 +105,22 @@ def test_trees_keep_off_the_track_and_stand_on_the_ground(core, scene, recording
         assert np.min(np.linalg.norm(path - middle, axis=1)) > scenery.TREE_CORRIDOR[0] - 1.5
         ground = float(terrain.height(middle[0], middle[1]))
         assert ground - 1.2 < fir[:, 2].min() < ground and 3.5 < np.ptp(fir[:, 2]) < 11.0
+
+
+def test_trees_keep_out_of_the_camera_s_way(core, scene, recording, terrain) -> None:
+    scenery = core("blender.scenery")
+    outline = np.array([[10.0, 60.0], [0.0, 5.0], [30.0, 5.0]])
+    feet = []
+    for clear in (None, outline):
+        trees = scenery.build_trees(terrain, recording.track_position, scene.collection, clear=clear)
+        firs = places(trees).reshape(-1, len(scenery._fir().vertices), 3)
+        feet.append(0.5 * (firs.min(axis=1) + firs.max(axis=1))[:, :2])
+    all_feet, kept = ({tuple(np.round(foot, 2)) for foot in some} for some in feet)
+    gone = np.array(sorted(all_feet - kept))
+    assert kept < all_feet
+    assert np.all(np.abs(gone - [15.0, 30.0]) < [20.0, 35.0])
+    middle = outline.mean(axis=0)
+    assert not any(np.linalg.norm(np.array(foot) - middle) < 5.0 for foot in kept)
 
 
 def test_mountains_are_far_and_round_about(core, scene) -> None:

@@ -16,7 +16,7 @@ def recording(core, extension):
 
 
 def test_moments_are_even_and_within_the_run(core, recording) -> None:
-    times = core("blender.strobe").strobe_times(recording, 10)
+    times = core("blender.views").turn_times(recording, 10)
     assert len(times) == 10
     assert 0.0 <= times[0] < times[-1] <= 9.0
     np.testing.assert_allclose(np.diff(times), np.diff(times)[0])
@@ -24,8 +24,53 @@ def test_moments_are_even_and_within_the_run(core, recording) -> None:
 
 
 def test_a_short_run_is_shown_whole(core, extension) -> None:
-    times = core("blender.strobe").strobe_times(make_recording(core, duration=1.0), 8)
+    times = core("blender.views").turn_times(make_recording(core, duration=1.0), 8)
     np.testing.assert_allclose(times[[0, -1]], [0.0, 1.0])
+
+
+def test_moments_over_bumps_are_within_so_much_way(core, recording) -> None:
+    times = core("blender.views").middle_times(recording, 9, 24.0)
+    np.testing.assert_allclose(times[-1] - times[0], 24.0 / 6.0, atol=0.01)  # at 6 m/s
+    np.testing.assert_allclose(0.5 * (times[0] + times[-1]), 4.5, atol=0.01)
+
+
+def test_a_stop_is_shown_until_the_skier_stands(core, recording) -> None:
+    clock = np.asarray(recording.time)
+    recording.speed = np.maximum(6.0 - 3.0 * np.maximum(clock - 5.0, 0.0), 0.0)
+    recording.arc_length = np.cumsum(recording.speed) * 0.001
+    times = core("blender.views").stop_times(recording, 8)
+    assert times[0] == pytest.approx(times[-1] - 3.0, abs=0.01)
+    assert np.interp(times[-1], clock, recording.speed) < 0.3
+    way = np.interp(times, clock, recording.arc_length)
+    np.testing.assert_allclose(np.diff(way), np.diff(way).mean(), atol=0.02)
+
+
+@pytest.mark.parametrize(
+    ("changes", "stop", "beside"),
+    [({}, False, False), ({"course.kind": "gates"}, False, False), ({"course.kind": "bumps"}, False, True), ({}, True, False)],
+)  # fmt: skip
+def test_bumps_are_seen_from_the_side_and_turns_from_below(core, recording, changes, stop, beside) -> None:
+    spec = core("blender.bake").recorded_run(recording).with_overrides(changes)
+    view = core("blender.views").choose_view(recording, spec, 8, stop=stop)
+    assert (abs(view.azimuth_deg) > 60.0) == beside
+    assert abs(view.azimuth_deg) < 90.0  # never from above
+    assert np.all(np.diff(view.time) > 0.0)
+    assert view.time[0] >= 0.0 and view.time[-1] <= 9.0
+
+
+def test_the_way_is_that_of_the_shown_moments(core, recording) -> None:
+    azimuth, descent = core("blender.views").way(recording, np.array([1.5, 4.5]))
+    assert azimuth == pytest.approx(0.0, abs=0.1)
+    assert descent == pytest.approx(10.0, abs=0.1)
+
+
+def test_the_camera_s_triangle_holds_what_it_sees(core, extension) -> None:
+    camera = np.array([30.0, -12.0, 4.0])
+    seen = np.random.default_rng(1).uniform((-20, -8, -3), (20, 9, 2), (60, 3))
+    outline = core("blender.strobe")._outline(camera, seen)
+    inside = core("blender.scenery")._within_outline(seen[:, :2], outline)
+    assert np.all(inside)
+    assert not core("blender.scenery")._within_outline(np.array([[44.0, -22.0], [0.0, 60.0]]), outline).any()
 
 
 def test_edge_changes_are_found(core, recording) -> None:

@@ -1,0 +1,96 @@
+"""Gates of a course: one pole each in slalom, two with a panel in giant slalom, plumb on the snow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from ..course import Gates, course_gates
+from ..spec import RunSpec
+from ..spec.gate_defaults import SLALOM_SPACING_MAX
+from ..terrain import Terrain
+from .materials import Paint, painted
+from .meshes import part_mesh
+from .skier.shapes import Part, Ring, box, dome, join, stack
+
+POLE_HEIGHT, POLE_RADIUS = 1.80, 0.016
+"""Height over the snow and half thickness of a pole [m]."""
+PANEL_WIDTH, PANEL_HEIGHT, PANEL_LOW = 0.75, 0.50, 1.05
+"""Distance between a gate's two poles, height of its panel and of the panel's lower edge over the snow [m]."""
+_BURIED = 0.30
+_PAINTS = {
+    "red": Paint("d1202b", 0.40),
+    "blue": Paint("1f52b8", 0.40),
+    "joint": Paint("1a1c20", 0.60),
+    "red panel": Paint("d1202b", 0.75),
+    "blue panel": Paint("1f52b8", 0.75),
+}
+
+
+def build_gates(spec: RunSpec, terrain: Terrain, collection: bpy.types.Collection) -> list[bpy.types.Object]:
+    """Return new objects in `collection` for the gates of `spec` on `terrain`; none for a course without gates.
+
+    "Gate 1" is the pole the skis turn round at the first gate; red and blue alternate, red first. Gates set as far
+    apart as in giant slalom also have "Gate 1 outer", a pole further from the skis, and "Gate 1 panel" between them.
+    The poles of one colour share a mesh.
+    """
+    gates = course_gates(spec, terrain)
+    if gates is None:
+        return []
+    meshes: dict[str, bpy.types.Mesh] = {}
+    objects = []
+    wide = has_panels(gates)
+    for index, (foot, side) in enumerate(zip(gates.position, gates.side.tolist(), strict=True)):
+        name, colour = f"Gate {index + 1}", ("red", "blue")[index % 2]
+        pole = _shared(meshes, f"{colour} pole", lambda colour=colour: _pole(colour))
+        objects.append(_stand(name, pole, foot, 0.0, collection))
+        if wide:
+            x, y = foot[0], foot[1] + side * PANEL_WIDTH
+            outer = np.array((x, y, float(terrain.height(x, y))))
+            panel = _shared(meshes, f"{colour} panel", lambda colour=colour: _panel(colour))
+            objects.append(_stand(f"{name} outer", pole, outer, 0.0, collection))
+            objects.append(_stand(f"{name} panel", panel, foot, 0.5 * np.pi * (1.0 - side), collection))
+    return objects
+
+
+def has_panels(gates: Gates) -> bool:
+    """Return whether `gates` stand as far apart as in giant slalom, down the slope."""
+    return len(gates) > 1 and float(np.median(np.diff(gates.position[:, 0]))) > SLALOM_SPACING_MAX
+
+
+def _shared(meshes: dict[str, bpy.types.Mesh], name: str, make: Callable[[], Part]) -> bpy.types.Mesh:
+    if name not in meshes:
+        meshes[name] = part_mesh(f"Gate {name}", make(), lambda paint: painted(f"Ski gate {paint}", _PAINTS[paint]))
+    return meshes[name]
+
+
+def _stand(
+    name: str, mesh: bpy.types.Mesh, foot: np.ndarray, turn: float, collection: bpy.types.Collection
+) -> bpy.types.Object:
+    obj = bpy.data.objects.new(name, mesh)
+    obj.location = foot.tolist()
+    obj.rotation_euler = (0.0, 0.0, turn)
+    collection.objects.link(obj)
+    return obj
+
+
+def _pole(colour: str) -> Part:
+    """Return a pole whose foot on the snow is the origin: a shaft that springs up from a dark joint at the snow."""
+    radius = POLE_RADIUS
+    joint = [(-_BURIED, 1.0), (0.015, 1.0), (0.02, 0.75), (0.05, 0.65), (0.08, 0.75), (0.085, 1.0), (0.12, 1.0)]
+    top = Ring(POLE_HEIGHT - radius, radius, radius, radius)
+    shaft = [Ring(0.12, radius, radius, radius), top, *dome(top, radius)]
+    return join(
+        [
+            stack([Ring(z, s * radius, s * radius, s * radius) for z, s in joint], 12, "joint", (False, False)),
+            stack(shaft, 12, colour, (False, True)),
+        ]
+    )
+
+
+def _panel(colour: str) -> Part:
+    """Return the panel of a gate whose turning pole stands at the origin and whose outer pole at +y."""
+    sleeve = box((0.006, PANEL_WIDTH + 2.4 * POLE_RADIUS, PANEL_HEIGHT), f"{colour} panel", 0.005)
+    return sleeve.moved((0.0, 0.5 * PANEL_WIDTH, PANEL_LOW + 0.5 * PANEL_HEIGHT))

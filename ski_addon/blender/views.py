@@ -1,0 +1,102 @@
+"""Which moments of a run a picture shows and from where, so that it shows the point of the course."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..frames import Array
+from .turns import turn_starts
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+    from ..spec import RunSpec
+
+TURNS_SHOWN = 2.0
+"""Turns a picture of turns shows: from the apex of one to that of the next but one."""
+GATE_TURNS_SHOWN = 3.0
+WAVES_SHOWN = 1.25
+"""Waves of bumps a picture shows, from trough to crest and on."""
+STOP_SHOWN = 3.0
+"""The last seconds of a stop that are shown [s]."""
+STANDING = 0.25
+"""Slower than this the skier stands [m/s]."""
+
+
+@dataclass(frozen=True)
+class View:
+    """Moments `time` (m,) [s after the start] and the camera that shows them.
+
+    `azimuth_deg` is where the camera stands, from the direction of the skier's way (0 is ahead, 90 is on the left),
+    `height_deg` over the slope's plane along that way, `sun_deg` where the sun stands, from the same direction,
+    `sun_height_deg` over the horizon; `lens` [mm]; `headroom` [m] of what is to be seen over the highest skier.
+    """
+
+    time: Array
+    azimuth_deg: float = -12.0
+    height_deg: float = 15.0
+    sun_deg: float = 100.0
+    sun_height_deg: float = 24.0
+    lens: float = 30.0
+    headroom: float = 7.0
+
+
+def choose_view(recording: Recording, spec: RunSpec, instants: int, *, stop: bool = False) -> View:
+    """Return the view of `recording` that suits its course, with `instants` moments; with `stop` that of its end."""
+    course = spec.course
+    if stop:
+        times = stop_times(recording, instants)
+        return View(times, azimuth_deg=35.0, height_deg=13.0, sun_deg=120.0, lens=40.0, headroom=3.0)
+    if course.kind == "bumps" and course.turn_amplitude == 0.0:
+        wave = {"bumps": 2.0 * spec.slope.bump_width, "moguls": spec.slope.mogul_spacing}.get(spec.slope.kind, 15.0)
+        times = middle_times(recording, instants, WAVES_SHOWN * wave)
+        return View(times, azimuth_deg=75.0, height_deg=5.0, sun_deg=25.0, sun_height_deg=13.0, lens=50.0, headroom=0.3)
+    if course.kind == "bumps":
+        times = turn_times(recording, instants, GATE_TURNS_SHOWN)
+        return View(times, azimuth_deg=28.0, height_deg=16.0, sun_deg=110.0, lens=40.0, headroom=2.0)
+    if course.kind == "gates":
+        times = turn_times(recording, instants, GATE_TURNS_SHOWN)
+        return View(times, azimuth_deg=-33.0, height_deg=14.0, sun_deg=80.0, lens=40.0, headroom=2.5)
+    return View(turn_times(recording, instants, TURNS_SHOWN))
+
+
+def turn_times(recording: Recording, instants: int, turns: float = TURNS_SHOWN) -> Array:
+    """Return `instants` times [s] evenly over about `turns` turns in the middle of `recording`."""
+    clock = np.asarray(recording.time) - recording.time[0]
+    edges = np.array([0.0, *clock[turn_starts(recording)], clock[-1]])
+    shown = min(turns, len(edges) - 1.0)
+    first = np.floor(0.5 * (len(edges) - 1.0 - shown)) + 0.5 * (shown < len(edges) - 1.0)
+    first = min(first, len(edges) - 1.0 - shown)
+    low, high = np.interp((first, first + shown), np.arange(len(edges)), edges)
+    return np.linspace(low, high, instants)
+
+
+def middle_times(recording: Recording, instants: int, length: float) -> Array:
+    """Return `instants` times [s] evenly over `length` [m] of the way in the middle of `recording`."""
+    clock = np.asarray(recording.time) - recording.time[0]
+    travelled = np.asarray(recording.arc_length) - recording.arc_length[0]
+    shown = min(length, float(travelled[-1]))
+    low = 0.5 * (travelled[-1] - shown)
+    ends = np.searchsorted(travelled, (low, low + shown)).clip(0, len(clock) - 1)
+    return np.linspace(clock[ends[0]], clock[ends[1]], instants)
+
+
+def stop_times(recording: Recording, instants: int) -> Array:
+    """Return up to `instants` times [s] over the last seconds before the skier stands, spaced so as not to overlap."""
+    clock = np.asarray(recording.time) - recording.time[0]
+    moving = np.flatnonzero(np.asarray(recording.speed) > STANDING)
+    end = min(int(moving[-1]) + 1, len(clock) - 1) if len(moving) else len(clock) - 1
+    begin = int(np.searchsorted(clock, clock[end] - STOP_SHOWN))
+    travelled = np.asarray(recording.arc_length)
+    wanted = np.linspace(travelled[begin], travelled[end], instants)
+    return np.unique(clock[np.searchsorted(travelled, wanted).clip(begin, end)])
+
+
+def way(recording: Recording, time: Array) -> tuple[float, float]:
+    """Return azimuth (0 is +x, 90 is +y) and descent [deg] of the straight line from the first to the last `time`."""
+    clock = np.asarray(recording.time) - recording.time[0]
+    first, last = (recording.track_position[np.searchsorted(clock, t)] for t in (time[0], time[-1] - 1e-9))
+    x, y, z = np.asarray(last - first)
+    return float(np.degrees(np.arctan2(y, x))), float(np.degrees(np.arctan2(-z, np.hypot(x, y))))

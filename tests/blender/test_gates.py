@@ -1,0 +1,94 @@
+"""Gates stand on the snow, where the course has them, plumb, by name and colour."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.blender.blender_tools import make_recording
+
+
+def gate_spec(core: Any, **changes: Any) -> Any:
+    keys = {"course.kind": "gates", "course.gate_count": 5, "slope.angle_deg": 15.0}
+    return core("spec").RunSpec().with_overrides({**keys, **changes})
+
+
+def built(core: Any, scene: Any, spec: Any) -> tuple[dict[str, Any], Any, Any]:
+    terrain = core("terrain").build_terrain(spec.slope)
+    objects = core("blender.gates").build_gates(spec, terrain, scene.collection)
+    scene.view_layers[0].update()
+    return {obj.name: obj for obj in objects}, core("course").course_gates(spec, terrain), terrain
+
+
+def world_vertices(obj: Any) -> np.ndarray:
+    return np.array([obj.matrix_world @ vertex.co for vertex in obj.data.vertices])
+
+
+def test_slalom_gates_are_single_poles_by_number(core, scene) -> None:
+    objects, _, _ = built(core, scene, gate_spec(core))
+    assert list(objects) == [f"Gate {number}" for number in range(1, 6)]
+    colours = [[material.name for material in obj.data.materials][-1] for obj in objects.values()]
+    assert colours == ["Ski gate red", "Ski gate blue"] * 2 + ["Ski gate red"]
+    assert len({obj.data.name for obj in objects.values()}) == 2  # meshes are shared
+
+
+@pytest.mark.parametrize("ground", [{}, {"slope.kind": "grid", "slope.grid_file": "rolling_hill"}])
+def test_poles_stand_on_the_snow_where_the_course_has_them(core, scene, ground) -> None:
+    objects, gates, terrain = built(core, scene, gate_spec(core, **ground))
+    for index, foot in enumerate(gates.position):
+        vertices = world_vertices(objects[f"Gate {index + 1}"])
+        np.testing.assert_allclose(vertices[:, :2].mean(axis=0), foot[:2], atol=1e-3)
+        height = vertices[:, 2] - float(terrain.height(foot[0], foot[1]))
+        assert height.max() == pytest.approx(1.8, abs=0.01)
+        assert height.min() < -0.1  # no gap where the snow falls away
+
+
+def test_poles_are_plumb_and_thin(core, scene) -> None:
+    objects, _, _ = built(core, scene, gate_spec(core))
+    for obj in objects.values():
+        width = np.ptp(world_vertices(obj)[:, :2], axis=0)
+        assert np.all((width > 0.03) & (width < 0.033))
+
+
+def test_giant_slalom_gates_have_a_panel_on_the_far_side(core, scene) -> None:
+    spec = gate_spec(core, **{"course.gate_setting": "giant_slalom"})
+    objects, gates, terrain = built(core, scene, spec)
+    assert len(objects) == 15
+    for index, (foot, side) in enumerate(zip(gates.position, gates.side.tolist(), strict=True)):
+        outer = np.array(objects[f"Gate {index + 1} outer"].location)
+        assert (outer[1] - foot[1]) * side == pytest.approx(0.75, abs=1e-5)
+        assert outer[2] == pytest.approx(float(terrain.height(outer[0], outer[1])), abs=1e-4)
+        panel = world_vertices(objects[f"Gate {index + 1} panel"])
+        assert panel[:, 1].mean() == pytest.approx(0.5 * (foot[1] + outer[1]), abs=1e-3)
+        assert 1.0 < panel[:, 2].min() - foot[2] < panel[:, 2].max() - foot[2] < 1.8
+
+
+def test_other_courses_have_no_gates(core, scene) -> None:
+    spec = core("spec").RunSpec()
+    assert core("blender.gates").build_gates(spec, core("terrain").build_terrain(spec.slope), scene.collection) == []
+    assert len(scene.collection.objects) == 0
+
+
+def test_gates_are_renewed_by_a_bake_and_what_is_mine_stays(core, scene) -> None:
+    import bpy
+
+    update = core("blender.ground").update_ground
+    recording = make_recording(core, duration=1.0, **{"course.kind": "gates", "course.gate_count": 4})
+    spec = core("blender.bake").recorded_run(recording)
+    ground = update(recording, spec, scene, None)
+    (gates,) = ground.children
+    mine = bpy.data.objects.new("Flag", None)
+    gates.objects.link(mine)
+    counts = len(bpy.data.meshes), len(bpy.data.objects)
+    update(recording, spec, scene, ground)
+    assert list(ground.children) == [gates]
+    assert sorted(obj.name for obj in gates.objects) == ["Flag", *(f"Gate {number}" for number in range(1, 5))]
+    assert (len(bpy.data.meshes), len(bpy.data.objects)) == counts
+
+
+def test_a_stage_has_its_gates(core, scene) -> None:
+    recording = make_recording(core, duration=1.0, **{"course.kind": "gates", "course.gate_count": 3})
+    core("blender.stage").build_stage(recording, core("blender.bake").recorded_run(recording), scene)
+    assert [obj.name for obj in scene.collection.children["Gates"].objects] == ["Gate 1", "Gate 2", "Gate 3"]
