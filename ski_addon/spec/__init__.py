@@ -10,7 +10,8 @@ from .fields import FieldInfo
 from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
 from .rows import GateSpec, PointSpec, PushSpec
 from .run_spec import SCHEMA_VERSION, RunSpec
-from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
+from .output_sections import BakeSpec, SimulationSpec
+from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 from .table import SECTIONS, field_table, find_field, row_kinds, section_fields
 
 __all__ = [
