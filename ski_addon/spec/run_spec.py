@@ -12,9 +12,9 @@ from typing import Any
 
 from . import document, row_values, table, values
 from .fields import ROWS, rows, text
+from .output_sections import BakeSpec, SimulationSpec
 from .presets import ground_beside
 from .rows import GateSpec, PointSpec, PushSpec
-from .output_sections import BakeSpec, SimulationSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SCHEMA_VERSION = 1
