@@ -12,7 +12,7 @@ from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
 from .absorption import Sink, legs_for, missing_length
-from .checks import check_arrival, check_lean, check_load, check_ranges, check_reach
+from .checks import check_arrival, check_ground, check_lean, check_load, check_ranges, check_reach
 from .comparison import RIGID_LEAN
 from .line import Line, TrackSpline, turned_frames
 from .pendulum import Legs, Pendulum, balanced_pendulum, mirrored, rigid_pendulum, upright
@@ -83,9 +83,11 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     """Plan how the skier of `model` skis `track`, which carries the ground's frames.
 
     Raises `PlanInfeasible`, with the place and the speed that would work there, when the track needs more lean than
-    `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach.
+    `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach;
+    `SpecError` for bumps that nobody can stand over.
     """
     stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg))
+    check_ground(spec, stance)
     sink = Sink(track)
     for _ in range(MOST_SINKS):
         line, pendulum = _balance(spec, track, stance, sink)
@@ -100,7 +102,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         if not sink.deepen(line.arc_length, missing_length(model.skeleton, poses)):
             break
     check_reach(line, poses)
-    check_ranges(line, poses, model)
+    check_ranges(spec, line, poses, model)
     tightest = max(float(np.max(np.abs(line.curvature))), 1e-9)
     return MotionPlan(
         arc_length=line.arc_length,
