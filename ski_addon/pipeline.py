@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from .body import SkierModel, build_skier_model
 from .course import Track, build_track
-from .planning import MotionPlan, plan_motion
+from .planning import MotionPlan, as_planned, plan_motion
 from .simulation import Progress, Recording, Simulation, check_pushes, simulate
 from .spec import RunSpec
 from .terrain import Terrain, build_terrain
@@ -30,9 +30,10 @@ def make_plan(spec: RunSpec) -> Planned:
     """
     spec.validate()
     terrain = build_terrain(spec.slope)
-    track = build_track(spec, terrain)
+    believed = as_planned(spec)
+    track = build_track(believed, terrain)
     model = build_skier_model(spec.skier)
-    plan = plan_motion(spec, track, model)
+    plan = plan_motion(believed, track, model)
     check_pushes(spec, plan.duration)
     return Planned(spec, terrain, track, model, plan)
 

@@ -1,5 +1,6 @@
 """Whole-body control: tasks, the quadratic program and its solver [SG19 sec. 6]."""
 
+from .baselines import FreeSkis, gains_of
 from .controller import Command, Controller
 from .dynamics import Dynamics
 from .formulation import Formulation, Problem
@@ -12,12 +13,14 @@ __all__ = [
     "Controller",
     "Dynamics",
     "Formulation",
+    "FreeSkis",
     "Gains",
     "OsqpSolver",
     "Problem",
     "Solution",
     "TaskGain",
     "TaskSet",
+    "gains_of",
     "progress_rate",
     "rotation_error",
 ]

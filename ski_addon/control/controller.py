@@ -9,6 +9,7 @@ import numpy as np
 from ..planning import Reference
 from ..snow import Snow
 from .balance import Balance
+from .baselines import FreeSkis
 from .dynamics import Dynamics
 from .formulation import Formulation
 from .gains import Gains
@@ -53,10 +54,13 @@ class Controller:
         time_step: float,
         *,
         replans: bool = True,
+        by_clock: bool = False,
+        free_skis: FreeSkis | None = None,
     ) -> None:
         """Set up tasks, formulation and solver for one skier on one plan, to be asked every `time_step` [s].
 
         With `replans` a skier who is off the plan is given a new one that leads back, else the plan is tracked always.
+        To compare: `by_clock` passes the plan as time passes, and `free_skis` leaves the skis to the snow.
         """
         self.dynamics, self.reference = dynamics, reference
         self.tasks = TaskSet(reference, gains, dynamics)
@@ -64,6 +68,7 @@ class Controller:
         self.solver = OsqpSolver(self.formulation)
         self.balance = Balance(dynamics, reference, self.tasks.motion, time_step, replans=replans)
         self.slide = Slide(dynamics, self.tasks.motion, time_step)
+        self._by_clock, self._free_skis = by_clock, free_skis
         self._normal = reference.columns["normal"]
 
     @property
@@ -75,13 +80,15 @@ class Controller:
         """Return the command at the dynamics' present state with the skier `progress` [s] into the plan."""
         dynamics, formulation = self.dynamics, self.formulation
         sample = self.reference.at(progress)
-        rate = progress_rate(self.reference, sample, dynamics)
+        rate = 1.0 if self._by_clock else progress_rate(self.reference, sample, dynamics)
         normal = sample[0, self._normal]
         edge_angle = np.array([edge_angle_of(dynamics.ski_rotation(ski), normal) for ski in range(2)])
         motion = self.tasks.motion.read(sample, rate)
         self.slide.apply()
         self.balance.update(progress, rate, sample, edge_angle, self.slide.share)
         desired = self.tasks.follow(motion)
+        if self._free_skis is not None:
+            self._free_skis.release(desired)
         problem = formulation.build(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         solution = self.solver.solve(problem)
         x = solution.unknowns

@@ -6,7 +6,7 @@ the left, and speed, heading and position follow by integration with friction an
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -101,6 +101,8 @@ def build_turn_track(spec: RunSpec, terrain: Terrain) -> Track:
     steepness, normal = float(np.sin(terrain.mean_angle)), float(np.cos(terrain.mean_angle))
     glide = _Glide(Snow.of(spec.snow, spec.skier), steepness, normal, speed_to_hold(spec))
     schedule = turn_schedule(spec.course, _schuss_time(glide, spec.course.start_speed))
+    if spec.technique.equations == "printed_sign":  # Algorithm 1 as it is printed: away from the lean
+        schedule = replace(schedule, curvature=-schedule.curvature)
     motion = _integrate(schedule, glide, spec.course.start_speed)
     heading0 = _start_heading(schedule, motion, spec.course)
     if heading0:

@@ -7,20 +7,43 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..course import Track
-from ..errors import PlanInfeasible
+from ..errors import PlanInfeasible, SpecError
 from ..spec import RunSpec
 from .line import Line
 from .pendulum import Pendulum, speed_for_lean
 from .pose import PlannedPoses
 from .ride import Ride
+from .stance import Stance
 
 if TYPE_CHECKING:
     from ..body import SkierModel
 
 
+RELIEF_KEYS = {"bumps": "bump_height", "moguls": "mogul_height"}
+"""Key of the height of a bumpy `slope.kind`."""
+HALF_ABSORBED = 0.5
+"""Share of bumps that legs take up on a height that is named as one that works."""
+
+
 def _place(line: Line, index: int) -> str:
     kind = "the transition after turn" if line.phase[index] == 0 else "turn"
     return f"{kind} {line.turn[index]} ({line.arc_length[index]:.1f} m, {line.time[index]:.1f} s)"
+
+
+def check_ground(spec: RunSpec, stance: Stance) -> None:
+    """Raise `SpecError` for bumps or moguls that nobody can stand over [SG19 sec. 7.2, with its 3 m high bumps].
+
+    Legs need not take up all of a bump, so only sides that are too steep are refused; the height that would work is one
+    of which they can take up half.
+    """
+    from ..terrain import check_bumps
+
+    reach = stance.extension + stance.retraction
+    try:
+        check_bumps(spec.slope, reach, absorption=0.0)
+    except SpecError:
+        check_bumps(spec.slope, reach, absorption=HALF_ABSORBED)
+        raise
 
 
 def check_arrival(track: Track, ride: Ride) -> None:
@@ -78,15 +101,16 @@ def check_reach(line: Line, poses: PlannedPoses) -> None:
         raise PlanInfeasible(_place(line, worst), None, reason)
 
 
-def check_ranges(line: Line, poses: PlannedPoses, model: SkierModel) -> None:
+def check_ranges(spec: RunSpec, line: Line, poses: PlannedPoses, model: SkierModel) -> None:
     """Raise `PlanInfeasible` where a hinge would leave its range."""
     angles = poses.qpos[:, model.actuated_qpos]
     beyond = np.maximum(model.joint_lower - angles, angles - model.joint_upper)
     worst, hinge = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
     if beyond[worst, hinge] > 0.0:
         name = model.skeleton.joint_names[model.skeleton.actuated[hinge]]
+        lower = f"lower slope.{RELIEF_KEYS[spec.slope.kind]}, " if spec.slope.kind in RELIEF_KEYS else ""
         reason = (
-            f"{name} would bend {np.rad2deg(beyond[worst, hinge]):.1f} degrees past its range (bring "
+            f"{name} would bend {np.rad2deg(beyond[worst, hinge]):.1f} degrees past its range ({lower}bring "
             "technique.angulation nearer to 0, change technique.knee_bend_deg or lean less)"
         )
         raise PlanInfeasible(_place(line, int(worst)), None, reason)

@@ -15,7 +15,7 @@ solution, which anticipates transitions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -110,6 +110,19 @@ def balanced_pendulum(line: Line, legs: Legs) -> Pendulum:
             smoothing = max(1.25 * smoothing, 0.04)
             h = _height(pivot, y, legs, smoothing)
     return _cut(pivot, line, y, h)
+
+
+def rigid_pendulum(line: Line, legs: Legs) -> Pendulum:
+    """Return the paper's rigid leg, which leans by the force balance of the instant [SG19 Eq. 7, 14], to compare."""
+    pivot = _pivot(line, legs)
+    lean = np.clip(np.arctan2(-pivot.side, pivot.rest), -STEEPEST, STEEPEST)
+    length = legs.length + pivot.rise
+    return _cut(pivot, line, length * np.sin(lean), length * np.cos(lean))
+
+
+def mirrored(pendulum: Pendulum) -> Pendulum:
+    """Return a pendulum that leans to the other side."""
+    return replace(pendulum, y=-pendulum.y, y_rate=-pendulum.y_rate)
 
 
 def _pivot(line: Line, legs: Legs) -> _Pivot:

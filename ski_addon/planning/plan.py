@@ -12,9 +12,10 @@ from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import RunSpec
 from .absorption import Sink, legs_for, missing_length
-from .checks import check_arrival, check_lean, check_load, check_ranges, check_reach
+from .checks import check_arrival, check_ground, check_lean, check_load, check_ranges, check_reach
+from .comparison import RIGID_LEAN
 from .line import Line, TrackSpline, turned_frames
-from .pendulum import Pendulum, balanced_pendulum, upright
+from .pendulum import Legs, Pendulum, balanced_pendulum, mirrored, rigid_pendulum, upright
 from .pose import plan_poses
 from .ride import Body, SpeedControl, plan_ride
 from .stance import Stance, build_stance
@@ -82,15 +83,18 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     """Plan how the skier of `model` skis `track`, which carries the ground's frames.
 
     Raises `PlanInfeasible`, with the place and the speed that would work there, when the track needs more lean than
-    `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach.
+    `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach;
+    `SpecError` for bumps that nobody can stand over.
     """
     stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg))
+    check_ground(spec, stance)
     sink = Sink(track)
     for _ in range(MOST_SINKS):
         line, pendulum = _balance(spec, track, stance, sink)
         if spec.technique.inclination:
             check_lean(spec, line, pendulum, stance.height)
-            check_load(spec, line, pendulum)
+            if spec.technique.equations not in RIGID_LEAN:  # the paper's lean asks for less than none
+                check_load(spec, line, pendulum)
         skis, body = turned_frames(line.tangent, line.surface_normal, line.steering), line.body_frame
         com = line.position + pendulum.y[:, None] * body[..., 1] + pendulum.h[:, None] * body[..., 2]
         angulation = _angulation(spec, line, pendulum.inclination)
@@ -98,7 +102,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         if not sink.deepen(line.arc_length, missing_length(model.skeleton, poses)):
             break
     check_reach(line, poses)
-    check_ranges(line, poses, model)
+    check_ranges(spec, line, poses, model)
     tightest = max(float(np.max(np.abs(line.curvature))), 1e-9)
     return MotionPlan(
         arc_length=line.arc_length,
@@ -138,11 +142,18 @@ def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[L
         line = spline.line(ride, snow)
         if not spec.technique.inclination:
             return line, upright(line, stance.height)
-        pendulum = balanced_pendulum(line, legs_for(spec, line, stance, sink))
+        pendulum = _pendulum(spec, line, legs_for(spec, line, stance, sink))
         if before is not None and _change(before, line) < 1e-6:
             break
         before, body = line, Body(pendulum.normal, pendulum.swing, line.arc_length)
     return line, pendulum
+
+
+def _pendulum(spec: RunSpec, line: Line, legs: Legs) -> Pendulum:
+    if spec.technique.equations in RIGID_LEAN:
+        return rigid_pendulum(line, legs)
+    pendulum = balanced_pendulum(line, legs)
+    return mirrored(pendulum) if spec.technique.equations == "printed_sign" else pendulum
 
 
 def _change(before: Line, after: Line) -> float:

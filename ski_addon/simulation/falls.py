@@ -47,10 +47,10 @@ class Fall:
 class FallWatch:
     """Watches a run for a fall and remembers what the muscles and the solver did before it."""
 
-    def __init__(self, dynamics: Dynamics, reference: Reference, terrain: Terrain) -> None:
-        """Watch the skier of `dynamics`, who follows `reference` on `terrain`."""
+    def __init__(self, dynamics: Dynamics, reference: Reference, terrain: Terrain, *, on_track: bool = True) -> None:
+        """Watch the skier of `dynamics`, who follows `reference` on `terrain` and, if `on_track`, must keep to it."""
         self._speed = reference.columns["speed"]
-        self._dynamics, self._terrain = dynamics, terrain
+        self._dynamics, self._terrain, self._on_track = dynamics, terrain, on_track
         skeleton = dynamics.model.skeleton
         self._height = skeleton.height
         self._head = skeleton.body("head") + 1
@@ -103,9 +103,9 @@ class FallWatch:
             return f"the head came down to {head:.2f} m over the snow"
         if com < LOWEST_COM * height:
             return f"the body came down to {com:.2f} m over the snow"
-        if ski_error > SKI_LEFT_TRACK:
+        if self._on_track and ski_error > SKI_LEFT_TRACK:
             return f"a ski left its track by {ski_error:.2f} m"
-        if abs(track_offset) > FARTHEST_OFF:
+        if self._on_track and abs(track_offset) > FARTHEST_OFF:
             return f"the skis were steered {abs(track_offset):.1f} m off the track"
         return None
 

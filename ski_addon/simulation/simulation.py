@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from ..body import SkierModel
-from ..control import Command, Controller, Dynamics, Gains
+from ..control import Command, Controller, Dynamics, FreeSkis, gains_of
 from ..frames import matrix_from_quaternion
 from ..gravity import GRAVITY
-from ..planning import MotionPlan, Reference
+from ..planning import BY_CLOCK, MotionPlan, Reference
 from ..snow import Snow
 from ..spec import RunSpec
 from ..terrain import Terrain
@@ -44,15 +44,17 @@ class Simulation:
         self.snow = Snow.of(spec.snow, spec.skier)
         self.reference = Reference(plan, model)
         self.dynamics = Dynamics(model, self.snow.drag_factor)
+        steered = spec.technique.controller != "open_loop"
         self.controller = Controller(
             self.dynamics,
             self.reference,
             self.snow,
             spec.simulation.segments,
-            Gains(),
+            gains_of(spec.technique.controller),
             self.time_step,
-            # a plan without lean is not balanced: there is nothing to come back to
-            replans=spec.technique.balance == "steering" and spec.technique.inclination,
+            replans=_replans(spec),
+            by_clock=spec.technique.equations in BY_CLOCK or not steered,
+            free_skis=None if steered else FreeSkis(self.dynamics, self.snow, terrain),
         )
         self.step_total = math.ceil(plan.duration / self.time_step)
         self.step_done = 0
@@ -61,7 +63,7 @@ class Simulation:
         self.finished = False
         self.fall: Fall | None = None
         self.step_seconds: list[float] = []
-        self._watch = FallWatch(self.dynamics, self.reference, terrain)
+        self._watch = FallWatch(self.dynamics, self.reference, terrain, on_track=steered)
         self._pushes = Pushes(spec.push, model, self.time_step)
         self._recorder = Recorder(self.step_total + 256)
         self._gauge = SkiGauge(self.dynamics, self.reference)
@@ -146,7 +148,9 @@ class Simulation:
         *zero_moment_point, border = self._gauge.zero_moment_point(command, value[columns["normal"]])
         place = self.reference.interval(self.progress)
         normal, left = value[columns["normal"]], value[columns["across"]]
-        over = dynamics.com - value[columns["track_position"]]
+        planned = value[columns["ski_position"]]
+        aside = 0.5 * (dynamics.ski_position(0) + dynamics.ski_position(1) - planned[:3] - planned[3:])
+        over = dynamics.com - value[columns["track_position"]] - aside  # from the skis, wherever they are
         hinges = dynamics.qpos[model.actuated_qpos]
         margin = min(float((hinges - model.joint_lower).min()), float((model.joint_upper - hinges).min()))
         solution = command.solution
@@ -205,6 +209,14 @@ class Simulation:
             "gravity": GRAVITY.tolist(),
             "mass": self.model.mass,
         }
+
+
+def _replans(spec: RunSpec) -> bool:
+    """Return whether a skier who is off the plan gets a new one; what is there to compare with does not balance."""
+    technique = spec.technique
+    compares = technique.controller != "whole_body" or technique.equations != "mended"
+    # a plan without lean is not balanced: there is nothing to come back to
+    return technique.balance == "steering" and technique.inclination and not compares
 
 
 def simulate(

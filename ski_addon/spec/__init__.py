@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from .estimate import Estimate, estimate
 from .fields import FieldInfo
+from .output_sections import BakeSpec, SimulationSpec
 from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
 from .rows import GateSpec, PointSpec, PushSpec
 from .run_spec import SCHEMA_VERSION, RunSpec
-from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
+from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 from .table import SECTIONS, field_table, find_field, row_kinds, section_fields
 
 __all__ = [

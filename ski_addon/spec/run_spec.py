@@ -12,9 +12,10 @@ from typing import Any
 
 from . import document, row_values, table, values
 from .fields import ROWS, rows, text
+from .output_sections import BakeSpec, SimulationSpec
 from .presets import ground_beside
 from .rows import GateSpec, PointSpec, PushSpec
-from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
+from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SCHEMA_VERSION = 1
 """Version of the run document; part of the content hash."""

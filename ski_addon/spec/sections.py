@@ -336,6 +336,22 @@ class TechniqueSpec:
         "the track; tracking = only pulls back to the plan",
     )
     pole: str = choice("trail", ("trail",), "Poles", "What the poles do: trail = hang back by their own weight")
+    controller: str = choice(
+        "whole_body",
+        ("whole_body", "open_loop", "inclination_only"),
+        "Controller",
+        "whole_body = joints, lean and skis are controlled together; to compare: open_loop = joints repeat the plan by "
+        "the clock and nothing balances or steers, as in early ski robots; inclination_only = a stiff body that leans",
+        advanced=True,
+    )
+    equations: str = choice(
+        "mended",
+        ("mended", "paper", "printed_sign", "rigid_lean", "frictionless", "clock"),
+        "Equations",
+        "To compare with the 2019 paper as printed: paper = its rigid lean, its frictionless plan and its reference by "
+        "the clock, which can be had one by one, too; printed_sign = turns bend away from the lean",
+        advanced=True,
+    )
 
 
 @dataclass(frozen=True)
@@ -374,22 +390,3 @@ class SnowSpec:
         word="unlimited",
         advanced=True,
     )
-
-
-@dataclass(frozen=True)
-class SimulationSpec:
-    """How the physics is stepped."""
-
-    time_step: float = number(0.001, 0.0005, 0.005, "s", "Time step", "Length of a physics step", advanced=True)
-    segments: int = whole(5, 2, 20, "per edge", "Edge segments", "Snow contact points on each ski edge", advanced=True)
-    seed: int = whole(0, 0, 2**31 - 1, "", "Seed", "Seed of every random number", advanced=True)
-
-
-@dataclass(frozen=True)
-class BakeSpec:
-    """How the motion becomes keyframes."""
-
-    fps: float = number(24.0, 1, 240, "1/s", "Frame rate", "Frames per second of the animation")
-    subframes: int = whole(1, 1, 8, "per frame", "Keys per frame", "Keyframes on each frame", advanced=True)
-    frame_start: int = whole(1, -100000, 1000000, "", "First frame", "Frame at which the run starts")
-    action: str = text("Ski run", 60, "Action", "Name of the new action in Blender")

@@ -10,7 +10,8 @@ from typing import Any
 
 from ..errors import SpecError
 from .fields import ROWS, FieldInfo, field_infos
-from .sections import BakeSpec, CourseSpec, SimulationSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
+from .output_sections import BakeSpec, SimulationSpec
+from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SECTIONS: Mapping[str, type] = MappingProxyType(
     {
