@@ -25,6 +25,8 @@ PUSH_LASTS = 0.129
 """Time [s] for which a push is expected to go on."""
 SLIDING_ACCELERATION = 5.0
 """Most acceleration [m/s^2] with which legs shift skis that slide across the track."""
+LEAST_TIPPING = 0.05
+"""A push that turns the body over by less than this [m/s^2] changes nothing by itself."""
 EDGE_MARGIN = 0.015
 """Distance [m] the load's middle keeps from the outermost bearing edges."""
 
@@ -77,7 +79,7 @@ class Balance:
         self._dynamics.outside = outside
         self.blend = self._blend_after(expected, wanted, omega)
         steering.update(self.blend * expected, omega, reach)
-        self.replanned = self.blend > 0.0 or abs(steering.offset) > 1e-9
+        self.replanned = self.blend > 0.0 or abs(steering.offset) > 1e-9 or abs(tipping) > LEAST_TIPPING
         if self.replanned:
             planned = float(self._motion.value[columns["across"]] @ sample[2, columns["com"]])
             self._replanner.apply(self.blend, steering, deviation, planned, push, tipping, 1.0 - sliding)

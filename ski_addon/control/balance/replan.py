@@ -180,7 +180,7 @@ class Replanner:
         roll_rate = blend * lean.rate
         edges = motion.value[columns["edge_angle"]].tolist()
         roll = blend * lean.angle
-        roll += blend * flattening(0.5 * (edges[0] + edges[1]) + roll, tipping)
+        roll += flattening(0.5 * (edges[0] + edges[1]) + roll, tipping)
         for ski, edge in enumerate(edges):
             planned, _ = lift_slope(edge, self._width)
             lift, slope = lift_slope(edge + roll, self._width)
