@@ -25,6 +25,8 @@ PUSH_LASTS = 0.129
 """Time [s] for which a push is expected to go on."""
 SLIDING_ACCELERATION = 5.0
 """Most acceleration [m/s^2] with which legs shift skis that slide across the track."""
+UNFELT = 0.01
+"""Forces and moments from outside below this [N, N m] are none."""
 LEAST_TIPPING = 0.05
 """A push that turns the body over by less than this [m/s^2] changes nothing by itself."""
 EDGE_MARGIN = 0.015
@@ -106,6 +108,8 @@ class Balance:
         """
         dynamics, motion = self._dynamics, self._motion
         self.push[:] = outside[:3]
+        if float(outside[:6] @ outside[:6]) < UNFELT * UNFELT:
+            return 0.0, 0.0
         arm = dynamics.com - dynamics.body_position(1)
         moment = dynamics.root_rotation @ outside[3:6]
         ax, ay, az = arm.tolist()
