@@ -58,7 +58,8 @@ def render_strobe(
     seen = np.concatenate(points)
     slant = np.cos(np.radians(view.azimuth_deg))  # of the way, as the camera sees it
     direction = direction_from(azimuth + view.azimuth_deg, view.height_deg - slant * descent)
-    camera = build_framing_camera(seen, direction, scene, add_collection(scene, "Camera"), lens=view.lens, fill=FILL)
+    look = {"lens": view.lens, "fill": FILL, "lift": view.lift}
+    camera = build_framing_camera(seen, direction, scene, add_collection(scene, "Camera"), **look)
     outline = _outline(np.array(camera.matrix_world.translation), seen)
     build_trees(terrain, recording.track_position, scene.collection.children["Scenery"], clear=outline)
     render_to(scene, target)

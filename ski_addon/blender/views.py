@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 TURNS_SHOWN = 2.0
 """Turns a picture of turns shows: from the apex of one to that of the next but one."""
 GATE_TURNS_SHOWN = 3.0
-WAVES_SHOWN = 1.25
+WAVES_SHOWN = 1.1
 """Waves of bumps a picture shows, from trough to crest and on."""
 STOP_SHOWN = 3.0
 """The last seconds of a stop that are shown [s]."""
@@ -31,7 +31,8 @@ class View:
 
     `azimuth_deg` is where the camera stands, from the direction of the skier's way (0 is ahead, 90 is on the left),
     `height_deg` over the slope's plane along that way, `sun_deg` where the sun stands, from the same direction,
-    `sun_height_deg` over the horizon; `lens` [mm]; `headroom` [m] of what is to be seen over the highest skier.
+    `sun_height_deg` over the horizon; `lens` [mm]; `headroom` [m] of what is to be seen over the highest skier; `lift` moves what is
+    shown up by that share of half the picture.
     """
 
     time: Array
@@ -41,6 +42,7 @@ class View:
     sun_height_deg: float = 24.0
     lens: float = 30.0
     headroom: float = 7.0
+    lift: float = 0.0
 
 
 def choose_view(recording: Recording, spec: RunSpec, instants: int, *, stop: bool = False) -> View:
@@ -52,10 +54,12 @@ def choose_view(recording: Recording, spec: RunSpec, instants: int, *, stop: boo
     if course.kind == "bumps" and course.turn_amplitude == 0.0:
         wave = {"bumps": 2.0 * spec.slope.bump_width, "moguls": spec.slope.mogul_spacing}.get(spec.slope.kind, 15.0)
         times = middle_times(recording, instants, WAVES_SHOWN * wave)
-        return View(times, azimuth_deg=75.0, height_deg=5.0, sun_deg=25.0, sun_height_deg=13.0, lens=50.0, headroom=0.3)
+        return View(
+            times, azimuth_deg=75.0, height_deg=5.0, sun_deg=25.0, sun_height_deg=13.0, lens=50.0, headroom=0.3, lift=-0.3
+        )
     if course.kind == "bumps":
         times = turn_times(recording, instants, GATE_TURNS_SHOWN)
-        return View(times, azimuth_deg=28.0, height_deg=16.0, sun_deg=110.0, lens=40.0, headroom=2.0)
+        return View(times, azimuth_deg=28.0, height_deg=17.0, sun_deg=95.0, sun_height_deg=14.0, lens=45.0, headroom=1.0)
     if course.kind == "gates":
         times = turn_times(recording, instants, GATE_TURNS_SHOWN)
         return View(times, azimuth_deg=-33.0, height_deg=14.0, sun_deg=80.0, lens=40.0, headroom=2.5)
