@@ -43,7 +43,7 @@ class SKI_OT_bake(bpy.types.Operator):
                 options = read_spec(settings).bake
                 result = bake_recording(recording, scene, armature=armature, options=options)
                 settings.armature = result.armature
-                settings.ground = update_ground(recording, run, scene, settings.ground)
+                settings.ground = update_ground(recording, run, scene, settings.ground, options)
         except Failed:
             return {"CANCELLED"}
         lines = bake_lines(result)

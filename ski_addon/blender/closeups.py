@@ -38,7 +38,7 @@ def render_closeups(
     from .stage import add_collection, build_stage, empty_file
 
     scene = empty_file()
-    skeleton, _ = build_stage(recording, spec, scene, sun_deg=SUN_BESIDE)
+    skeleton = build_stage(recording, spec, scene, sun_deg=SUN_BESIDE).skeleton
     rig = build_rig(skeleton, scene)
     set_render(scene, size, samples)
     moments = turn_apexes(recording)

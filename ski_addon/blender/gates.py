@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import bpy
 import numpy as np
 
+from ..animation.gate_motion import POLE_LENGTH, GateSwing
 from ..course import Gates, course_gates
+from ..frames import Array
 from ..spec import RunSpec
 from ..spec.gate_defaults import SLALOM_SPACING_MAX
 from ..terrain import Terrain
+from .channels import KeyWriter, assign_action, bake_action
 from .materials import Paint, painted
 from .meshes import part_mesh
 from .skier.shapes import Part, Ring, box, dome, join, stack
 
-POLE_HEIGHT, POLE_RADIUS = 1.80, 0.016
-"""Height over the snow and half thickness of a pole [m]."""
+POLE_RADIUS = 0.016
+"""Half thickness of a pole [m]."""
 PANEL_WIDTH, PANEL_HEIGHT, PANEL_LOW = 0.75, 0.50, 1.05
 """Distance between a gate's two poles, height of its panel and of the panel's lower edge over the snow [m]."""
 _BURIED = 0.30
@@ -29,30 +33,56 @@ _PAINTS = {
 }
 
 
-def build_gates(spec: RunSpec, terrain: Terrain, collection: bpy.types.Collection) -> list[bpy.types.Object]:
-    """Return new objects in `collection` for the gates of `spec` on `terrain`; none for a course without gates.
+def build_gates(spec: RunSpec, terrain: Terrain, collection: bpy.types.Collection) -> list[list[bpy.types.Object]]:
+    """Return for each gate of `spec` on `terrain` its new objects in `collection`; none for a course without gates.
 
     "Gate 1" is the pole the skis turn round at the first gate; red and blue alternate, red first. Gates set as far
     apart as in giant slalom also have "Gate 1 outer", a pole further from the skis, and "Gate 1 panel" between them.
-    The poles of one colour share a mesh.
+    The poles of one colour share a mesh. All are turned by quaternions, from plumb.
     """
     gates = course_gates(spec, terrain)
     if gates is None:
         return []
     meshes: dict[str, bpy.types.Mesh] = {}
-    objects = []
     wide = has_panels(gates)
+    built = []
     for index, (foot, side) in enumerate(zip(gates.position, gates.side.tolist(), strict=True)):
         name, colour = f"Gate {index + 1}", ("red", "blue")[index % 2]
-        pole = _shared(meshes, f"{colour} pole", lambda colour=colour: _pole(colour))
-        objects.append(_stand(name, pole, foot, 0.0, collection))
+        pole = _shared(meshes, f"{colour} pole", partial(_pole, colour))
+        objects = [_stand(name, pole, foot, collection)]
         if wide:
             x, y = foot[0], foot[1] + side * PANEL_WIDTH
             outer = np.array((x, y, float(terrain.height(x, y))))
-            panel = _shared(meshes, f"{colour} panel", lambda colour=colour: _panel(colour))
-            objects.append(_stand(f"{name} outer", pole, outer, 0.0, collection))
-            objects.append(_stand(f"{name} panel", panel, foot, 0.5 * np.pi * (1.0 - side), collection))
-    return objects
+            key = f"{colour} panel {'left' if side > 0 else 'right'}"
+            panel = _shared(meshes, key, partial(_panel, colour, side))
+            objects.append(_stand(f"{name} outer", pole, outer, collection))
+            objects.append(_stand(f"{name} panel", panel, foot, collection))
+        built.append(objects)
+    return built
+
+
+def pose_gates(gates: list[list[bpy.types.Object]], swings: list[GateSwing | None], time: Array) -> None:
+    """Tilt each of `gates` just so far that it lies clear of the skier at all of the moments `time` (m,) [s]."""
+    for objects, swing in zip(gates, swings, strict=True):
+        if swing is not None:
+            turn = swing.quaternion(np.interp(time, swing.time, swing.pushed).max())
+            for obj in objects:
+                obj.rotation_quaternion = turn
+
+
+def bake_gates(
+    gates: list[list[bpy.types.Object]], swings: list[GateSwing | None], rate: float, frame_start: float
+) -> None:
+    """Give `gates` keys on the frames during which they swing, at `rate` [frames/s]; time 0 is `frame_start`."""
+    for objects, swing in zip(gates, swings, strict=True):
+        if swing is None:
+            continue
+        frame = np.arange(np.floor(swing.time[0] * rate), np.ceil(swing.time[-1] * rate) + 1.0)
+        turns = swing.quaternion(swing.at(frame / rate))
+        action, slot, channelbag = bake_action(objects[0], objects[0].name)
+        KeyWriter(channelbag, frame_start + frame).write("rotation_quaternion", turns, "Gate")
+        for obj in objects:  # they move as one
+            assign_action(obj, action, slot)
 
 
 def has_panels(gates: Gates) -> bool:
@@ -66,12 +96,10 @@ def _shared(meshes: dict[str, bpy.types.Mesh], name: str, make: Callable[[], Par
     return meshes[name]
 
 
-def _stand(
-    name: str, mesh: bpy.types.Mesh, foot: np.ndarray, turn: float, collection: bpy.types.Collection
-) -> bpy.types.Object:
+def _stand(name: str, mesh: bpy.types.Mesh, foot: Array, collection: bpy.types.Collection) -> bpy.types.Object:
     obj = bpy.data.objects.new(name, mesh)
     obj.location = foot.tolist()
-    obj.rotation_euler = (0.0, 0.0, turn)
+    obj.rotation_mode = "QUATERNION"
     collection.objects.link(obj)
     return obj
 
@@ -80,7 +108,7 @@ def _pole(colour: str) -> Part:
     """Return a pole whose foot on the snow is the origin: a shaft that springs up from a dark joint at the snow."""
     radius = POLE_RADIUS
     joint = [(-_BURIED, 1.0), (0.015, 1.0), (0.02, 0.75), (0.05, 0.65), (0.08, 0.75), (0.085, 1.0), (0.12, 1.0)]
-    top = Ring(POLE_HEIGHT - radius, radius, radius, radius)
+    top = Ring(POLE_LENGTH - radius, radius, radius, radius)
     shaft = [Ring(0.12, radius, radius, radius), top, *dome(top, radius)]
     return join(
         [
@@ -90,7 +118,7 @@ def _pole(colour: str) -> Part:
     )
 
 
-def _panel(colour: str) -> Part:
-    """Return the panel of a gate whose turning pole stands at the origin and whose outer pole at +y."""
+def _panel(colour: str, side: int) -> Part:
+    """Return the panel of a gate whose turning pole stands at the origin and whose outer pole on that `side`."""
     sleeve = box((0.006, PANEL_WIDTH + 2.4 * POLE_RADIUS, PANEL_HEIGHT), f"{colour} panel", 0.005)
-    return sleeve.moved((0.0, 0.5 * PANEL_WIDTH, PANEL_LOW + 0.5 * PANEL_HEIGHT))
+    return sleeve.moved((0.0, 0.5 * side * PANEL_WIDTH, PANEL_LOW + 0.5 * PANEL_HEIGHT))

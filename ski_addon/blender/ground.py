@@ -8,10 +8,14 @@ import bpy
 import numpy as np
 
 from ..body import build_skeleton
+from ..spec import BakeSpec
 from ..terrain import build_terrain
-from .gates import build_gates
+from .bake import scene_rate
+from .channels import MARK as BAKED
+from .gates import bake_gates, build_gates
 from .ski_tracks import build_ski_tracks
 from .slope import build_slope
+from .stage import swings_of
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
@@ -21,29 +25,43 @@ MARK = "ski_addon_ground"
 
 
 def update_ground(
-    recording: Recording, spec: RunSpec, scene: bpy.types.Scene, collection: bpy.types.Collection | None
+    recording: Recording,
+    spec: RunSpec,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection | None,
+    options: BakeSpec | None = None,
 ) -> bpy.types.Collection:
     """Put slope and tracks of `recording` into `collection` (default: a new one in `scene`) and return it.
 
-    Gates go into the collection "Gates" within it. What an earlier bake put there is replaced; what the user put there
-    stays.
+    Gates go into the collection "Gates" within it, with keys where the skier knocks them over; `options` gives the
+    first frame. What an earlier bake put there is replaced; what the user put there stays.
     """
     if collection is None:
         collection = bpy.data.collections.new("Ski slope")
         scene.collection.children.link(collection)
-    for obj in [obj for obj in collection.all_objects if obj.get(MARK)]:
-        mesh = obj.data
-        bpy.data.objects.remove(obj)
-        if mesh.users == 0:
-            bpy.data.meshes.remove(mesh)
-    terrain = build_terrain(spec.slope)
+    _clear(collection)
+    skeleton, terrain = build_skeleton(spec.skier), build_terrain(spec.slope)
     made = [build_slope(terrain, np.asarray(recording.track_position), collection, far=())]
-    made += build_ski_tracks(recording, build_skeleton(spec.skier), terrain, collection)
+    made += build_ski_tracks(recording, skeleton, terrain, collection)
     if spec.course.kind == "gates":
-        made += build_gates(spec, terrain, _gates_within(collection))
+        gates = build_gates(spec, terrain, _gates_within(collection))
+        swings = swings_of(recording, spec, skeleton, terrain)
+        bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start)
+        made += [obj for objects in gates for obj in objects]
     for obj in made:
         obj[MARK] = True
     return collection
+
+
+def _clear(collection: bpy.types.Collection) -> None:
+    """Remove what an earlier bake put into `collection` and those within it."""
+    for obj in [obj for obj in collection.all_objects if obj.get(MARK)]:
+        mesh, action = obj.data, obj.animation_data.action if obj.animation_data else None
+        bpy.data.objects.remove(obj)
+        if mesh.users == 0:
+            bpy.data.meshes.remove(mesh)
+        if action is not None and action.users == 0 and action.get(BAKED):
+            bpy.data.actions.remove(action)
 
 
 def _gates_within(collection: bpy.types.Collection) -> bpy.types.Collection:

@@ -38,15 +38,17 @@ def bake_file(recording: Recording, spec: RunSpec, target: str | Path) -> Path:
     check_target(target)
     import bpy
 
-    from .bake import bake_recording
+    from .bake import bake_recording, scene_rate
     from .camera import build_follow_camera
+    from .gates import bake_gates
     from .stage import add_collection, build_stage, empty_file
 
     scene = empty_file()
     scene.name = "Ski run"
     set_frame_rate(scene, spec.bake.fps)
-    build_stage(recording, spec, scene)
+    stage = build_stage(recording, spec, scene)
     result = bake_recording(recording, scene, options=spec.bake)
+    bake_gates(stage.gates, stage.swings, scene_rate(scene), spec.bake.frame_start)
     build_follow_camera(result.armature, scene, add_collection(scene, "Camera"))
     scene.frame_set(scene.frame_start)
     look_through_camera()

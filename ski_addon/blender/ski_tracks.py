@@ -5,7 +5,7 @@ A ski that skids sweeps a band as wide as it lies across its way.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import bpy
 import numpy as np
@@ -58,7 +58,7 @@ def groove_vertices(
     ski_left = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
     across = _across_the_way(place, normal, ski_left)
     turned = np.arccos(np.clip(np.sum(across * ski_left, axis=1), 0.0, 1.0))
-    skid = np.sin(np.maximum(turned - CARVES, 0.0))
+    skid = _smooth(np.sin(np.maximum(turned - CARVES, 0.0)))
     lean = np.clip(np.abs(edge) / np.deg2rad(30.0), 0.0, 1.0)
     shift = np.sign(edge) * lean * 0.5 * half_width
     rough = _roughness(len(place), seed)
@@ -85,9 +85,13 @@ def _across_the_way(place: Array, normal: Array, ski_left: Array) -> Array:
 def _roughness(count: int, seed: int) -> Array:
     """Return factors (count, k) on the ridges' heights that vary along the track within about half a metre."""
     noise = np.random.default_rng(seed).normal(0.0, 1.0, (count, len(_PROFILE)))
+    return 1.0 + 0.45 * np.clip(np.stack([_smooth(column, "constant") for column in noise.T], axis=1), -1.5, 1.5)
+
+
+def _smooth(values: Array, beyond: Literal["edge", "constant"] = "edge") -> Array:
+    """Return `values` (m,) averaged over about half a metre along the track; `beyond` as in `numpy.pad`."""
     window = np.hanning(9)
-    smooth = np.apply_along_axis(lambda column: np.convolve(column, window / window.sum(), mode="same"), 0, noise)
-    return 1.0 + 0.45 * np.clip(smooth, -1.5, 1.5)
+    return np.convolve(np.pad(values, 4, mode=beyond), window / window.sum(), mode="valid")
 
 
 def build_ski_tracks(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
+from ..animation.gate_motion import GateSwing, gate_swings
 from ..body import Skeleton, build_skeleton
+from ..course import course_gates
 from ..spec import RunSpec
 from ..terrain import Terrain, build_terrain
 from .gates import build_gates
@@ -24,6 +27,16 @@ SUN = 120.0, 24.0
 """Azimuth and height of the sun [deg]."""
 EXPOSURE = 0.8
 """Exposure [stops] that makes sunny snow look sunny."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """What stands round a run: its `skeleton` and `terrain`, the objects of each gate and how each gate `swings`."""
+
+    skeleton: Skeleton
+    terrain: Terrain
+    gates: list[list[bpy.types.Object]]
+    swings: list[GateSwing | None]
 
 
 def empty_file() -> bpy.types.Scene:
@@ -48,8 +61,8 @@ def build_stage(
     *,
     sun_deg: tuple[float, float] = SUN,
     trees: bool = True,
-) -> tuple[Skeleton, Terrain]:
-    """Set `scene` up round the track of `recording` and return its skeleton and terrain; trees may be left out.
+) -> Stage:
+    """Set `scene` up round the track of `recording`; trees may be left out, gates stand upright.
 
     `sun_deg` are azimuth and height of the sun, see `build_sun`.
     """
@@ -57,8 +70,7 @@ def build_stage(
     track = np.asarray(recording.track_position)
     build_slope(terrain, track, add_collection(scene, "Slope"))
     build_ski_tracks(recording, skeleton, terrain, add_collection(scene, "Ski tracks"))
-    if spec.course.kind == "gates":
-        build_gates(spec, terrain, add_collection(scene, "Gates"))
+    gates = build_gates(spec, terrain, add_collection(scene, "Gates")) if spec.course.kind == "gates" else []
     scenery = add_collection(scene, "Scenery")
     if trees:
         build_trees(terrain, track, scenery)
@@ -68,4 +80,10 @@ def build_stage(
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"
     scene.view_settings.exposure = EXPOSURE
-    return skeleton, terrain
+    return Stage(skeleton, terrain, gates, swings_of(recording, spec, skeleton, terrain))
+
+
+def swings_of(recording: Recording, spec: RunSpec, skeleton: Skeleton, terrain: Terrain) -> list[GateSwing | None]:
+    """Return how the gates of `spec` swing in `recording`, one entry a gate."""
+    gates = course_gates(spec, terrain)
+    return [] if gates is None else gate_swings(recording, skeleton, gates)

@@ -38,6 +38,7 @@ def render_strobe(
     require_blender("the picture")
     check_target(target)
     from .camera import build_framing_camera, direction_from
+    from .gates import pose_gates
     from .pictures import render_to, set_render
     from .posing import leave_copies, posed, remove_rig
     from .rig import build_rig
@@ -48,25 +49,27 @@ def render_strobe(
     view = choose_view(recording, spec, instants, stop=stop)
     azimuth, descent = way(recording, view.time)
     sun = azimuth + view.sun_deg, view.sun_height_deg
-    skeleton, terrain = build_stage(recording, spec, scene, sun_deg=sun, trees=False)
+    stage = build_stage(recording, spec, scene, sun_deg=sun, trees=False)
     figures = add_collection(scene, "Instants")
-    rig = build_rig(skeleton, scene)
-    points = [leave_copies(rig, figures) for _ in posed(rig, recording, skeleton, view.time)]
+    rig = build_rig(stage.skeleton, scene)
+    points = [leave_copies(rig, figures) for _ in posed(rig, recording, stage.skeleton, view.time)]
     remove_rig(rig)
+    pose_gates(stage.gates, stage.swings, view.time)
     set_render(scene, size, samples)
     points.append(points[0] + np.array([0.0, 0.0, view.headroom]))
     seen = np.concatenate(points)
     slant = np.cos(np.radians(view.azimuth_deg))  # of the way, as the camera sees it
     direction = direction_from(azimuth + view.azimuth_deg, view.height_deg - slant * descent)
-    camera = build_framing_camera(seen, direction, scene, add_collection(scene, "Camera"), lens=view.lens, fill=FILL)
+    look = {"lens": view.lens, "fill": FILL, "lift": view.lift}
+    camera = build_framing_camera(seen, direction, scene, add_collection(scene, "Camera"), **look)
     outline = _outline(np.array(camera.matrix_world.translation), seen)
-    build_trees(terrain, recording.track_position, scene.collection.children["Scenery"], clear=outline)
+    build_trees(stage.terrain, recording.track_position, scene.collection.children["Scenery"], clear=outline)
     render_to(scene, target)
     return Path(target)
 
 
 def _outline(camera: Array, seen: Array) -> Array:
-    """Return the corners (3, 2), counter-clockwise, of the triangle from `camera` (3,) over all points `seen` (n, 3)."""
+    """Return the corners (3, 2), counter-clockwise, of the triangle from `camera` (3,) over all of `seen` (n, 3)."""
     offset = (seen - camera)[:, :2]
     ahead = offset.mean(axis=0)
     bearing = np.arctan2(ahead[0] * offset[:, 1] - ahead[1] * offset[:, 0], offset @ ahead)

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 
 TURNS_SHOWN = 2.0
 """Turns a picture of turns shows: from the apex of one to that of the next but one."""
-GATE_TURNS_SHOWN = 3.0
-WAVES_SHOWN = 1.25
+SHORT_TURNS_SHOWN = 3.0
+"""Turns round moguls and slalom gates follow each other closely."""
+WAVES_SHOWN = 1.1
 """Waves of bumps a picture shows, from trough to crest and on."""
 STOP_SHOWN = 3.0
 """The last seconds of a stop that are shown [s]."""
@@ -30,8 +31,9 @@ class View:
     """Moments `time` (m,) [s after the start] and the camera that shows them.
 
     `azimuth_deg` is where the camera stands, from the direction of the skier's way (0 is ahead, 90 is on the left),
-    `height_deg` over the slope's plane along that way, `sun_deg` where the sun stands, from the same direction,
-    `sun_height_deg` over the horizon; `lens` [mm]; `headroom` [m] of what is to be seen over the highest skier.
+    `height_deg` over the slope's plane along that way; `sun_deg` where the sun stands, from the same direction, and
+    `sun_height_deg` over the horizon; `lens` [mm]; `headroom` [m] of what is to be seen over the highest skier; `lift`
+    moves what is shown up by that share of half the picture.
     """
 
     time: Array
@@ -41,6 +43,7 @@ class View:
     sun_height_deg: float = 24.0
     lens: float = 30.0
     headroom: float = 7.0
+    lift: float = 0.0
 
 
 def choose_view(recording: Recording, spec: RunSpec, instants: int, *, stop: bool = False) -> View:
@@ -48,26 +51,30 @@ def choose_view(recording: Recording, spec: RunSpec, instants: int, *, stop: boo
     course = spec.course
     if stop:
         times = stop_times(recording, instants)
-        return View(times, azimuth_deg=35.0, height_deg=13.0, sun_deg=120.0, lens=40.0, headroom=3.0)
+        return View(times, 35.0, 13.0, sun_deg=120.0, lens=40.0, headroom=3.0)
     if course.kind == "bumps" and course.turn_amplitude == 0.0:
         wave = {"bumps": 2.0 * spec.slope.bump_width, "moguls": spec.slope.mogul_spacing}.get(spec.slope.kind, 15.0)
         times = middle_times(recording, instants, WAVES_SHOWN * wave)
-        return View(times, azimuth_deg=75.0, height_deg=5.0, sun_deg=25.0, sun_height_deg=13.0, lens=50.0, headroom=0.3)
+        return View(times, 75.0, 5.0, sun_deg=25.0, sun_height_deg=13.0, lens=50.0, headroom=0.3, lift=-0.3)
     if course.kind == "bumps":
-        times = turn_times(recording, instants, GATE_TURNS_SHOWN)
-        return View(times, azimuth_deg=28.0, height_deg=16.0, sun_deg=110.0, lens=40.0, headroom=2.0)
+        times = turn_times(recording, instants, SHORT_TURNS_SHOWN)
+        return View(times, 28.0, 17.0, sun_deg=95.0, sun_height_deg=14.0, lens=45.0, headroom=1.0)
     if course.kind == "gates":
-        times = turn_times(recording, instants, GATE_TURNS_SHOWN)
-        return View(times, azimuth_deg=-33.0, height_deg=14.0, sun_deg=80.0, lens=40.0, headroom=2.5)
+        turns = TURNS_SHOWN if course.gate_setting == "giant_slalom" else SHORT_TURNS_SHOWN
+        times = turn_times(recording, instants, turns, from_apex=False)  # gates are seen between skiers
+        return View(times, -33.0, 14.0, sun_deg=80.0, lens=40.0, headroom=2.5)
     return View(turn_times(recording, instants, TURNS_SHOWN))
 
 
-def turn_times(recording: Recording, instants: int, turns: float = TURNS_SHOWN) -> Array:
-    """Return `instants` times [s] evenly over about `turns` turns in the middle of `recording`."""
+def turn_times(recording: Recording, instants: int, turns: float = TURNS_SHOWN, *, from_apex: bool = True) -> Array:
+    """Return `instants` times [s] evenly over about `turns` turns in the middle of `recording`.
+
+    They begin where a turn is half over, or where the edges change.
+    """
     clock = np.asarray(recording.time) - recording.time[0]
     edges = np.array([0.0, *clock[turn_starts(recording)], clock[-1]])
     shown = min(turns, len(edges) - 1.0)
-    first = np.floor(0.5 * (len(edges) - 1.0 - shown)) + 0.5 * (shown < len(edges) - 1.0)
+    first = np.floor(0.5 * (len(edges) - 1.0 - shown)) + 0.5 * (from_apex and shown < len(edges) - 1.0)
     first = min(first, len(edges) - 1.0 - shown)
     low, high = np.interp((first, first + shown), np.arange(len(edges)), edges)
     return np.linspace(low, high, instants)

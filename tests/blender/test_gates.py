@@ -19,7 +19,7 @@ def built(core: Any, scene: Any, spec: Any) -> tuple[dict[str, Any], Any, Any]:
     terrain = core("terrain").build_terrain(spec.slope)
     objects = core("blender.gates").build_gates(spec, terrain, scene.collection)
     scene.view_layers[0].update()
-    return {obj.name: obj for obj in objects}, core("course").course_gates(spec, terrain), terrain
+    return {obj.name: obj for parts in objects for obj in parts}, core("course").course_gates(spec, terrain), terrain
 
 
 def world_vertices(obj: Any) -> np.ndarray:
@@ -86,6 +86,53 @@ def test_gates_are_renewed_by_a_bake_and_what_is_mine_stays(core, scene) -> None
     assert list(ground.children) == [gates]
     assert sorted(obj.name for obj in gates.objects) == ["Flag", *(f"Gate {number}" for number in range(1, 5))]
     assert (len(bpy.data.meshes), len(bpy.data.objects)) == counts
+
+
+def test_gates_are_keyed_while_they_swing_and_plumb_else(core, scene) -> None:
+    import bpy
+
+    tools, motion = core("blender.gates"), core("animation.gate_motion")
+    spec = gate_spec(core, **{"course.gate_setting": "giant_slalom", "course.gate_count": 2})
+    gates = tools.build_gates(spec, core("terrain").build_terrain(spec.slope), scene.collection)
+    time = np.linspace(2.0, 3.0, 101)
+    swing = motion.GateSwing(time, 0.8 * np.sin(np.pi * (time - 2.0)), 0.0 * time, np.array([0.6, 0.8]))
+    tools.bake_gates(gates, [swing, None], 24.0, 5)
+    assert [len([obj for obj in objects if obj.animation_data]) for objects in gates] == [3, 0]
+    assert len(bpy.data.actions) == 1  # pole, outer pole and panel move as one
+    for frame, tilt in ((1, 0.0), (5 + 60, 0.8), (200, 0.0)):
+        scene.frame_set(frame)
+        for obj in gates[0]:
+            up = np.array(obj.matrix_world)[:3, 2]
+            np.testing.assert_allclose(up, [0.6 * np.sin(tilt), 0.8 * np.sin(tilt), np.cos(tilt)], atol=2e-3)
+
+
+def test_a_strobe_picture_s_gates_lie_clear_of_every_skier(core, scene) -> None:
+    tools, motion = core("blender.gates"), core("animation.gate_motion")
+    spec = gate_spec(core, **{"course.gate_count": 2})
+    gates = tools.build_gates(spec, core("terrain").build_terrain(spec.slope), scene.collection)
+    time = np.linspace(0.0, 4.0, 101)
+    swing = motion.GateSwing(time, 0.3 * time, 0.2 * time, np.array([1.0, 0.0]))
+    tools.pose_gates(gates, [None, swing], np.array([0.5, 3.0, 1.0]))
+    scene.view_layers[0].update()
+    tilts = [float(np.arccos(obj.matrix_world[2][2])) for (obj,) in gates]
+    np.testing.assert_allclose(tilts, [0.0, 0.6], atol=1e-3)
+
+
+def test_a_bake_s_gates_give_way_where_the_skier_leans_into_them(core, scene) -> None:
+    import bpy
+
+    update, channels = core("blender.ground").update_ground, core("blender.channels")
+    changes = {"course.kind": "gates", "course.gate_setting": "list"}
+    recording = make_recording(core, duration=3.0, **changes)
+    spec = core("blender.bake").recorded_run(recording)
+    spec = core("spec").RunSpec.from_text(
+        spec.to_toml() + "[[gate]]\nx = 9.0\ny = 1.8\n[[gate]]\nx = 20.0\ny = -6.0\n", "gates"
+    )
+    ground = update(recording, spec, scene, None)
+    swinging = [obj.name for obj in ground.all_objects if obj.animation_data]
+    assert swinging == ["Gate 1"]
+    update(recording, spec, scene, ground)
+    assert len([action for action in bpy.data.actions if action.get(channels.MARK)]) == 1
 
 
 def test_a_stage_has_its_gates(core, scene) -> None:

@@ -47,8 +47,13 @@ def test_a_stop_is_shown_until_the_skier_stands(core, recording) -> None:
 
 @pytest.mark.parametrize(
     ("changes", "stop", "beside"),
-    [({}, False, False), ({"course.kind": "gates"}, False, False), ({"course.kind": "bumps"}, False, True), ({}, True, False)],
-)  # fmt: skip
+    [
+        ({}, False, False),
+        ({"course.kind": "gates"}, False, False),
+        ({"course.kind": "bumps"}, False, True),
+        ({}, True, False),
+    ],
+)
 def test_bumps_are_seen_from_the_side_and_turns_from_below(core, recording, changes, stop, beside) -> None:
     spec = core("blender.bake").recorded_run(recording).with_overrides(changes)
     view = core("blender.views").choose_view(recording, spec, 8, stop=stop)
