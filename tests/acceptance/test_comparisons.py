@@ -104,14 +104,16 @@ def test_open_loop_stays_on_the_snow():
     up = recording.surface_normal[0]
     for side in "LR":
         height = (position[:, skeleton.body(f"ski.{side}")] - recording.track_position[0]) @ up
-        assert -0.01 < height.min() and height.max() < 0.05
+        assert height.min() > -0.01 and height.max() < 0.05
 
 
 @pytest.mark.slow
-def test_open_loop_ends_far_away():
-    recording = simulated("paper_main", {**LONG, "technique.controller": "open_loop", "course.start_speed": 5})
-    assert recording.status == "finished" and np.abs(recording.track_offset[:, 0]).max() > 1.0
-    assert simulated("paper_main", {**LONG, "technique.controller": "open_loop"}).status == "fell"
+def test_open_loop_falls_within_six_turns():
+    """However slow: errors of lean and heading add up, and nothing takes them back."""
+    for speed in (5, 9):
+        changes = {"simulation.time_step": 0.004, "technique.controller": "open_loop", "course.start_speed": speed}
+        recording = simulated("paper_main", changes)
+        assert recording.status == "fell" and np.abs(recording.track_offset[:, 0]).max() > 1.0
 
 
 def test_inclination_only_carries_the_turns_but_not_a_push():
@@ -145,7 +147,7 @@ def test_claim_22_shorter_transitions_vary_the_snow_force_more():
         across = np.cross(recording.surface_normal, recording.track_tangent)
         side = np.sum(recording.snow_force.sum(axis=1) * across, axis=1)
         spread.append((np.ptp(normal), np.abs(np.gradient(side, recording.time)).max()))
-    assert spread[1][0] > 1.2 * spread[0][0] and spread[1][1] > 1.5 * spread[0][1]
+    assert spread[1][0] > 1.5 * spread[0][0] and spread[1][1] > 1.3 * spread[0][1]
 
 
 @pytest.mark.slow

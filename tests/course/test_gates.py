@@ -142,8 +142,8 @@ def test_asked_radius_is_skied():
     [(15, 1, 34, 5.39, 21.0), (15, 2, 40, 7.48, 29.9), (10, 1, 24, 4.36, 25.8)],
 )
 def test_claim_25_turn_of_figure_7(radius, distance, spacing, half_chord, half_angle):
-    """[SG19 sec. 4.5] The circle's centre is r - d inside of the pole. The paper's arc ends on the line through the pole
-    down the slope; ours eases from the apex on, so it crosses that line a little farther out.
+    """[SG19 sec. 4.5] The circle's centre is r - d inside of the pole. The paper's arc ends on the line through the
+    pole down the slope; ours eases from the apex on, so it crosses that line a little farther out.
     """
     assert half_chord == pytest.approx(np.sqrt(distance * (2 * radius - distance)), abs=0.01)
     assert half_angle == pytest.approx(np.rad2deg(np.arccos(1 - distance / radius)), abs=0.1)
