@@ -46,6 +46,8 @@ class SyntheticRecording:
     steering_offset: np.ndarray
     capture_margin: np.ndarray
     zmp_margin: np.ndarray
+    com: np.ndarray
+    steering: np.ndarray
 
     def save(self, path: Path) -> None:
         """Write the arrays as a stand-in for a recording."""
@@ -69,6 +71,7 @@ def synthetic_recording(
     steps = np.stack(
         (np.full_like(time, 8.0), -4.0 * np.cos(2 * np.pi * time / 5.0), -8.0 * np.tan(tilt) + 0 * time), axis=1
     )
+    ground = np.stack((x, y, -x * np.tan(tilt)), axis=1)
     inclination = np.radians(30.0) * swing
     weight = 9.81 * spec.skier.mass
     left = np.array([0.0, 1.0, 0.0])
@@ -88,7 +91,7 @@ def synthetic_recording(
         arc_length=8.0 * time,
         progress=time,
         speed=8.0 + swing**2,
-        track_position=np.stack((x, y, -x * np.tan(tilt)), axis=1),
+        track_position=ground,
         track_tangent=steps / np.linalg.norm(steps, axis=1, keepdims=True),
         surface_normal=normal,
         phase=np.where(np.abs(swing) > 0.5, np.sign(swing), 0).astype(np.int8),
@@ -103,4 +106,6 @@ def synthetic_recording(
         steering_offset=0.19 * swing,
         capture_margin=0.4 - 0.3 * np.abs(swing),
         zmp_margin=0.05 + 0.04 * swing,
+        com=ground + (0.7 + 0.1 * swing)[:, None] * normal,
+        steering=np.radians(12.0) * swing,
     )

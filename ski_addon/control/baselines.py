@@ -17,14 +17,15 @@ from .dynamics import Dynamics
 from .gains import Gains, TaskGain
 from .tasks import Desired
 
-HOLD = TaskGain(400.0, 40.0, 10.0)
-"""How firmly snow holds a ski at its surface [1/s^2, 1/s]."""
+HOLD = TaskGain(400.0, 40.0, 100.0)
+"""How firmly snow holds a ski at its surface."""
 GRIP = 40.0
 """Rate [1/s] at which a ski's slip across itself, and its turning off its circle, die away."""
 CARVE_FROM = math.radians(3.0)
 """Edge angle [rad] about which a ski begins to carve its circle; a flat one runs straight."""
 
 OPEN_LOOP = Gains(
+    ski=HOLD,
     edging=TaskGain(0.0, 0.0, 0.0),
     com=TaskGain(0.0, 0.0, 0.0),
     pose=TaskGain(400.0, 40.0, 1.0),

@@ -23,7 +23,7 @@ class Reference:
     `ski_position` (2 x 3), `joints` (31), `turning` (left ski, right ski, pelvis: world rotation vector per second),
     `along`, `across`, `normal` (3 each: the skis' direction, their left, and up from the snow), `tangent` (3) of the
     track, `quaternion` (as `turning`, x 4), `inclination`, `edge_angle` (2), `curvature`, `speed`, `turn_phase`,
-    `arc_length`, `load`, `track_position` (3).
+    `steering`, `arc_length`, `load`, `track_position` (3).
     """
 
     def __init__(self, plan: MotionPlan, model: SkierModel) -> None:
@@ -48,6 +48,7 @@ class Reference:
             "curvature": plan.curvature[:, None],
             "speed": plan.speed[:, None],
             "turn_phase": plan.turn_phase[:, None],
+            "steering": plan.steering[:, None],
             "arc_length": plan.arc_length[:, None],
             "load": plan.load[:, None],
             "track_position": plan.position,

@@ -19,14 +19,15 @@ from .style import INK, QUIET, RC
 if TYPE_CHECKING:
     from ..simulation import Recording
 
-SIZE_INCHES = (14.0, 16.5)
+SIZE_INCHES = (14.0, 19.0)
 DPI = 110
-MARGINS = {"left": 0.055, "right": 0.975, "top": 0.93, "bottom": 0.037}
+MARGINS = {"left": 0.055, "right": 0.975, "top": 0.938, "bottom": 0.032}
 PANELS = (
     (panels.draw_lean, panels.draw_speed),
     (panels.draw_ski_forces, panels.draw_force_split),
     (panels.draw_torques, panels.draw_errors),
     (panels.draw_margins, panels.draw_offsets),
+    (panels.draw_skid, panels.draw_legs),
 )
 """Plots over time, row by row."""
 
@@ -38,7 +39,7 @@ def draw_figure(recording: Recording) -> Figure:
     with matplotlib.rc_context(RC):
         figure = Figure(figsize=SIZE_INCHES, dpi=DPI, facecolor="white")
         FigureCanvasAgg(figure)
-        grid = figure.add_gridspec(5, 2, height_ratios=(0.95, 1, 1, 1, 1), hspace=0.42, wspace=0.14, **MARGINS)
+        grid = figure.add_gridspec(6, 2, height_ratios=(0.95, 1, 1, 1, 1, 0.85), hspace=0.42, wspace=0.14, **MARGINS)
         track_axes = figure.add_subplot(grid[0, :])
         colours = panels.draw_track(track_axes, recording)
         bar = figure.colorbar(colours, ax=track_axes, pad=0.01, fraction=0.02)
@@ -65,12 +66,19 @@ def _write_title(figure: Figure, recording: Recording) -> None:
     status = recording.header["status"]
     facts = (
         f"{spec.skier.mass:g} kg, {spec.skier.height:g} m on {spec.slope.angle_deg:g} degrees: {_course_words(spec)}"
-    )
+    ) + _comparison_words(spec)
     ended = "" if status == "finished" else f" ({status} at {float(recording.time[-1]):.2f} s)"
     name = " ".join(spec.name.split()) + ended
-    figure.text(0.055, 0.977, name, fontsize=17, fontweight="bold", color=INK, va="center", parse_math=False)
-    figure.text(0.055, 0.958, facts, fontsize=10.5, color=INK, va="center")
-    figure.text(0.975, 0.958, "grey: transition between turns", fontsize=9, color=QUIET, va="center", ha="right")
+    figure.text(0.055, 0.98, name, fontsize=17, fontweight="bold", color=INK, va="center", parse_math=False)
+    figure.text(0.055, 0.9635, facts, fontsize=10.5, color=INK, va="center")
+    figure.text(0.975, 0.9635, "grey: transition between turns", fontsize=9, color=QUIET, va="center", ha="right")
+
+
+def _comparison_words(spec: RunSpec) -> str:
+    """Return what is run to compare with, or nothing for a skier who uses all he can."""
+    technique = spec.technique
+    chosen = (technique.controller, "whole_body"), (technique.equations, "mended")
+    return "".join(f", {word.replace('_', ' ')}" for word, usual in chosen if word != usual)
 
 
 def _course_words(spec: RunSpec) -> str:

@@ -137,6 +137,24 @@ def _draw_pushes(axes: Any, recording: Recording) -> None:
             axes.axvspan(band.start, band.end, color=ALARM, alpha=0.15, linewidth=0, zorder=0.5)
 
 
+def draw_skid(axes: Any, recording: Recording) -> None:
+    """Angle by which the skis are turned out of the track to brake, left positive."""
+    draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)
+    axes.axhline(0, color=QUIET, linewidth=0.8)
+    angle = np.degrees(recording.steering)
+    curve(axes, recording.time, angle, THIRD, f"skid, {_largest(np.abs(angle)):.3g} at most", linewidth=1.6)
+    finish(axes, "Skis against the track, left is positive", "degrees")
+
+
+def draw_legs(axes: Any, recording: Recording) -> None:
+    """Height of the body over the snow, which the legs make, and of the snow over a straight slope."""
+    draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)
+    curve(axes, recording.time, series.body_height(recording), INK, "centre of mass over the snow", linewidth=1.6)
+    bumps = {"linewidth": 0.9, "linestyle": (0, (4, 2))}
+    curve(axes, recording.time, series.bump_height(recording), THIRD, "snow over a straight slope", **bumps)
+    finish(axes, "What the legs do", "m")
+
+
 def draw_speed(axes: Any, recording: Recording) -> None:
     """Speed along the track."""
     draw_bands(axes, series.phase_bands(recording.time, recording.phase), named=True)

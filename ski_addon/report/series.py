@@ -66,6 +66,19 @@ def force_split(recording: Recording) -> ForceSplit:
     return ForceSplit(np.sum(total * recording.surface_normal, axis=1), np.sum(total * left, axis=1))
 
 
+def body_height(recording: Recording) -> Array:
+    """Return how high the centre of mass is over the snow along its normal (n,) [m]."""
+    over = recording.com - recording.track_position
+    return np.sum(over * recording.surface_normal, axis=1)
+
+
+def bump_height(recording: Recording) -> Array:
+    """Return how high the snow under the skis is over a straight slope, from the run's start to its end (n,) [m]."""
+    level = np.mean(recording.surface_normal, axis=0)
+    height = recording.track_position @ (level / np.linalg.norm(level))
+    return height - np.interp(recording.arc_length, recording.arc_length[[0, -1]], height[[0, -1]])
+
+
 def phase_bands(time: Array, phase: Array) -> list[Band]:
     """Return the stretches of equal phase, in order; each ends where the next starts."""
     if not len(time):

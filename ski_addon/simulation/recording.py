@@ -61,6 +61,7 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "zmp": (2,),
     "zmp_margin": (),
     "disturbance": (3,),
+    "steering": (),
 }
 """Real numbers recorded each step, and their shapes."""
 COUNTS = {
@@ -94,6 +95,7 @@ class Recording:
     (n,) of the line the skis are steered along; `capture_margin` (n,) [m]: positive while steering can keep the skier up;
     `zmp` (n, 2) where the load acts, along and to the left of the skis from their middle [m], and `zmp_margin` (n,) [m]
     from there to the border of the bearing edges. Errors and offsets are from the plan, not from the steered line.
+    `steering` (n,) [rad] is the planned angle from the track to the skis, positive to the left: skids brake.
     """
 
     header: dict[str, Any]
@@ -134,6 +136,7 @@ class Recording:
     zmp: np.ndarray
     zmp_margin: np.ndarray
     disturbance: np.ndarray
+    steering: np.ndarray
 
     def __post_init__(self) -> None:
         for name in array_names():

@@ -188,6 +188,7 @@ class Simulation:
                 zero_moment_point,
                 border,
                 balance.push,
+                float(value[columns["steering"]][0]),
             ),
             (self._labels[0][place], self._labels[1][place], solution.iterations, solution.status, solution.attempts),
         )

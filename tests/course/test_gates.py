@@ -137,6 +137,29 @@ def test_asked_radius_is_skied():
     assert np.abs(track.curvature).max() == pytest.approx(0.2, rel=0.02)
 
 
+@pytest.mark.parametrize(
+    ("radius", "distance", "spacing", "half_chord", "half_angle"),
+    [(15, 1, 34, 5.39, 21.0), (15, 2, 40, 7.48, 29.9), (10, 1, 24, 4.36, 25.8)],
+)
+def test_claim_25_turn_of_figure_7(radius, distance, spacing, half_chord, half_angle):
+    """[SG19 sec. 4.5] The circle's centre is r - d inside of the pole. The paper's arc ends on the line through the
+    pole down the slope; ours eases from the apex on, so it crosses that line a little farther out.
+    """
+    assert half_chord == pytest.approx(np.sqrt(distance * (2 * radius - distance)), abs=0.01)
+    assert half_angle == pytest.approx(np.rad2deg(np.arccos(1 - distance / radius)), abs=0.1)
+    places = [(spacing * (k + 1), 0.09 * spacing * (-1) ** k) for k in range(4)]
+    track, gates = course_of(listed(places, gate_radius=radius, gate_distance=distance))
+    down = np.cross([0.0, 1.0, 0.0], track.surface_normal[0])
+    for pole, side, apex in zip(gates.position, gates.side, gates.apexes(track), strict=True):
+        assert np.linalg.norm(track.position[apex] - pole) == pytest.approx(distance, abs=0.01)
+        centre = track.position[apex] + side * track.left[apex] / abs(track.curvature[apex])
+        assert np.linalg.norm(centre - pole) == pytest.approx(radius - distance, abs=0.02)
+        assert np.sign((centre - pole)[1]) == side
+        across, along = track.position[:, 1] - pole[1], (track.position - pole) @ down
+        crossed = np.abs(along[np.flatnonzero(np.diff(np.sign(across)))])
+        assert np.all((0.99 * half_chord < np.sort(crossed)[:2]) & (np.sort(crossed)[:2] < 1.6 * half_chord))
+
+
 def test_a_single_gate_is_turned_round():
     track, gates = course_of(listed([(20.0, 0.0)], changes={0: {"side": "left"}}))
     assert track.turn.max() == 1 and track.phase.max() == LEFT and track.phase.min() == TRANSITION

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from ski_addon.errors import PlanInfeasible
+from ski_addon.errors import PlanInfeasible, SpecError
 from ski_addon.pipeline import make_plan
 from tests.ski_runs import FRICTIONLESS, preset
 
@@ -104,3 +104,34 @@ def test_without_inclination_nothing_is_refused_for_lean():
     changes = {**SHORT, "technique.inclination": False, "technique.inclination_max_deg": 5}
     plan = make_plan(preset("paper_main", changes)).plan
     assert np.all(plan.inclination == 0.0) and np.all(np.abs(plan.edge_angle) < 1e-3)
+
+
+# -- bumps ---------------------------------------------
+
+
+FEW = {"slope.bump_count": 2, "slope.mogul_count": 3}
+
+
+@pytest.mark.parametrize(("name", "key", "height"), [("bumps", "bump_height", 3), ("moguls", "mogul_height", 1.8)])
+def test_bumps_that_nobody_can_stand_over_are_explained(name, key, height):
+    """[reading s] The paper's h = 3 m by w = 8 m among them; the height the line names is then skied."""
+    with pytest.raises(SpecError) as caught:
+        make_plan(preset(name, {f"slope.{key}": height, **FEW}))
+    line = str(caught.value)
+    assert line.startswith(f"slope.{key} = {height:.1f} is more than a skier can take: ") and "\n" not in line
+    works = float(re.search(r"a height of ([\d.]+) m would work", line)[1])
+    assert make_plan(preset(name, {f"slope.{key}": works, **FEW})).plan.length > 10.0
+
+
+def test_paper_bumps_of_three_metres_end_a_run_with_one_line(tmp_path, capsys):
+    from ski_addon.cli import main
+
+    assert main(["run", "bumps", "--set", "slope.bump_height=3", "--quiet", "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "arcs meet at 73.7 degrees" in said and "above 6.4 m/s" in said
+    assert not (tmp_path / "out" / "recording.npz").exists()
+
+
+def test_bumps_past_an_ankle_name_the_bumps_as_the_remedy():
+    with pytest.raises(PlanInfeasible, match=r"degrees past its range \(lower slope.bump_height, bring"):
+        make_plan(preset("bumps", {"slope.bump_height": 1.0, "slope.bump_count": 2}))

@@ -43,6 +43,8 @@ def test_all_plots_and_the_name_of_the_run_are_there(figure):
         "Fig. 15",
         "torques",
         "Distance",
+        "against the track",
+        "legs",
         "Balance",
         "Off the plan",
     ):
@@ -119,6 +121,12 @@ def test_empty_recording_is_refused(tmp_path):
 def test_picture_in_a_missing_folder_is_an_output_error(tmp_path):
     with pytest.raises(OutputError, match="No such file"):
         save_report(synthetic_recording(duration=1.0), tmp_path / "none" / "a.png")
+
+
+def test_title_says_what_is_compared():
+    compared = {"technique.controller": "open_loop", "technique.equations": "rigid_lean"}
+    figure = report_figure.draw_figure(synthetic_recording(RunSpec().with_overrides(compared)))
+    assert any(text.get_text().endswith("s between them, open loop, rigid lean") for text in figure.texts)
 
 
 @pytest.mark.parametrize(

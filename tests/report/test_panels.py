@@ -28,6 +28,8 @@ OVER_TIME = (
     panels.draw_errors,
     panels.draw_margins,
     panels.draw_offsets,
+    panels.draw_skid,
+    panels.draw_legs,
 )
 
 
@@ -182,6 +184,25 @@ def test_offsets_are_the_recorded_ones(recording):
     np.testing.assert_allclose(found["skis"], 1000 * recording.track_offset[:, 0])
     np.testing.assert_allclose(found["centre of mass"], 1000 * recording.track_offset[:, 1])
     np.testing.assert_allclose(found["steered line"], 1000 * recording.steering_offset)
+
+
+def test_skid_is_the_recorded_angle_in_degrees(recording):
+    found = curves(drawn(panels.draw_skid, recording))
+    np.testing.assert_allclose(found["skid, 12 at most"], np.degrees(recording.steering))
+
+
+def test_legs_are_seen_in_the_height_over_the_snow_and_bumps_over_a_straight_slope(recording):
+    """A bump of 0.3 m that the legs take up: the snow rises, the body over it comes down."""
+    bump = 0.3 * np.exp(-(((recording.time - 6.0) / 0.5) ** 2))[:, None] * recording.surface_normal
+    over = dataclasses.replace(recording, track_position=recording.track_position + bump)
+    found = curves(drawn(panels.draw_legs, over))
+    level = curves(drawn(panels.draw_legs, recording))
+    np.testing.assert_allclose(level["snow over a straight slope"], 0.0, atol=1e-9)
+    np.testing.assert_allclose(level["centre of mass over the snow"], 0.7 + 0.1 * np.sin(0.4 * np.pi * recording.time))
+    height = found["snow over a straight slope"]
+    assert height.max() == pytest.approx(0.3, abs=1e-6) and recording.time[height.argmax()] == pytest.approx(6.0)
+    body = found["centre of mass over the snow"]
+    np.testing.assert_allclose(body + height, level["centre of mass over the snow"], atol=1e-9)
 
 
 @pytest.mark.parametrize("draw", [panels.draw_margins, panels.draw_offsets])
