@@ -65,7 +65,33 @@ def summary_lines(summary: Mapping[str, Any]) -> list[str]:
     """Return the lines of a summary that a person wants to see."""
     width = max(len(label) for _, label, _ in SUMMARY_LINES)
     known = [(label, form, summary.get(key)) for key, label, form in SUMMARY_LINES]
-    return [f"  {label.ljust(width)}  {form.format(value)}" for label, form, value in known if value is not None]
+    lines = [f"  {label.ljust(width)}  {form.format(value)}" for label, form, value in known if value is not None]
+    return [*lines, f"  {'gates'.ljust(width)}  {gate_words(summary)}"] if summary.get("gates") else lines
+
+
+def gate_words(summary: Mapping[str, Any]) -> str:
+    """Return how the gates of a course were passed: how many, how near to their poles, and which ones were missed."""
+    reached = [value is not None for value in summary["gate_distances_m"]]
+    missed = set(summary["gates_missed"])
+    near = [value for k, value in enumerate(summary["gate_distances_m"], 1) if value is not None and k not in missed]
+    words = f"{summary['gates_passed']} of {summary['gates']} passed"
+    if near:
+        words += f", {min(near):.2f} to {max(near):.2f} m from their poles"
+    for label, found in (("missed", reached), ("not reached", [not value for value in reached])):
+        numbers = [k for k in summary["gates_missed"] if found[k - 1]]
+        words += f"; {label}: {_number_words(numbers)}" if numbers else ""
+    return words
+
+
+def _number_words(numbers: Sequence[int]) -> str:
+    """Return ascending whole numbers in words; three and more in a row as a range."""
+    groups: list[list[int]] = []
+    for number in numbers:
+        if groups and number == groups[-1][-1] + 1:
+            groups[-1].append(number)
+        else:
+            groups.append([number])
+    return ", ".join(f"{g[0]} to {g[-1]}" if len(g) > 2 else ", ".join(map(str, g)) for g in groups)
 
 
 def json_text(value: object) -> str:

@@ -48,6 +48,7 @@ class SyntheticRecording:
     zmp_margin: np.ndarray
     com: np.ndarray
     steering: np.ndarray
+    qpos: np.ndarray
 
     def save(self, path: Path) -> None:
         """Write the arrays as a stand-in for a recording."""
@@ -60,8 +61,13 @@ def synthetic_recording(
     duration: float = 12.0,
     status: str = "finished",
     detail: dict[str, Any] | None = None,
+    gates: int = 0,
 ) -> SyntheticRecording:
-    """Sinusoidal turns of 5 s period on a slope of 10 degrees, at 8 m/s, left turn first; 100 samples a second."""
+    """Sinusoidal turns of 5 s period on a slope of 10 degrees, at 8 m/s, left turn first; 100 samples a second.
+
+    The skier stands upright in the straight pose, 1 m over the track and facing along it. With `gates`, one stands in
+    the middle of each turn, half a metre and then 10 cm more each on its inner side; the recording may end before them.
+    """
     spec = spec or RunSpec()
     time = np.arange(0.0, duration, 0.01)
     swing = np.sin(2 * np.pi * time / 5.0)
@@ -77,6 +83,10 @@ def synthetic_recording(
     left = np.array([0.0, 1.0, 0.0])
     share = np.stack((0.5 - 0.2 * swing, 0.5 + 0.2 * swing), axis=1)
     total = weight * ((1 - 0.2 * (swing**2 < 0.1))[:, None] * normal + np.tan(inclination)[:, None] * left)
+    qpos = np.zeros((len(time), 42))
+    qpos[:, :3] = np.stack((x, y, 1.0 - x * np.tan(tilt)), axis=1)
+    heading = np.arctan2(steps[:, 1], steps[:, 0])
+    qpos[:, 3], qpos[:, 6] = np.cos(0.5 * heading), np.sin(0.5 * heading)
     return SyntheticRecording(
         header={
             "spec": spec.to_toml(),
@@ -86,6 +96,7 @@ def synthetic_recording(
             "actuated_joint_names": list(HINGES),
             "mass": spec.skier.mass,
             "gravity": [0.0, 0.0, -9.81],
+            **({"gates": _gates(gates, tilt)} if gates else {}),
         },
         time=time,
         arc_length=8.0 * time,
@@ -108,4 +119,14 @@ def synthetic_recording(
         zmp_margin=0.05 + 0.04 * swing,
         com=ground + (0.7 + 0.1 * swing)[:, None] * normal,
         steering=np.radians(12.0) * swing,
+        qpos=qpos,
     )
+
+
+def _gates(count: int, tilt: float) -> dict[str, list]:
+    """Poles on the inner side of the first `count` turns, as a recording's header has them."""
+    side = (-1.0) ** np.arange(count)
+    distance = 0.5 + 0.1 * np.arange(count)
+    x, y = 10.0 + 20.0 * np.arange(count), side * (distance - 10.0 / np.pi)
+    position = np.stack((x, y, -x * np.tan(tilt)), axis=1)
+    return {"position": position.tolist(), "side": side.astype(int).tolist(), "distance": distance.tolist()}

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +41,19 @@ class Gates:
 
     def __len__(self) -> int:
         return len(self.side)
+
+    def lists(self) -> dict[str, list[Any]]:
+        """Return the gates as lists of plain numbers, to be written as JSON."""
+        return {name: value.tolist() for name, value in vars(self).items()}
+
+    @classmethod
+    def from_lists(cls, lists: Mapping[str, list[Any]]) -> Gates:
+        """Return the gates of what `lists` gave; no gates if there is nothing in it."""
+        return cls(
+            np.array(lists.get("position", []), dtype=float).reshape(-1, 3),
+            np.array(lists.get("side", []), dtype=np.int8),
+            np.array(lists.get("distance", []), dtype=float),
+        )
 
     def apexes(self, track: Track) -> np.ndarray:
         """Return the indices (n,) of the places of `track` that are nearest to each pole, seen from above."""

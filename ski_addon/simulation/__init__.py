@@ -1,9 +1,21 @@
 """Simulation: stepping, fall detection, recording and its summary."""
 
+from .clearance import GatePassing, gate_summary, recorded_gates
 from .diagnostics import summarise
 from .falls import Fall
 from .pushes import check_pushes
 from .recording import Recording
 from .simulation import Progress, Simulation, simulate
 
-__all__ = ["Fall", "Progress", "Recording", "Simulation", "check_pushes", "simulate", "summarise"]
+__all__ = [
+    "Fall",
+    "GatePassing",
+    "Progress",
+    "Recording",
+    "Simulation",
+    "check_pushes",
+    "gate_summary",
+    "recorded_gates",
+    "simulate",
+    "summarise",
+]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..gravity import STANDARD_GRAVITY
+from .clearance import gate_summary, recorded_gates
 from .recording import Recording
 
 
@@ -15,11 +16,13 @@ def summarise(recording: Recording, step_seconds: list[float] | None = None) -> 
 
     `track_offset_max_m` is of the skis; `capture_margin_min_m` and `zmp_margin_min_m` are the least distances from losing
     balance and from the border of the bearing edges. Lengths in metres, angles in degrees where the key says so, forces in body weights; `torque_ratio_max` is of the
-    human limit; `step_us_*` are wall microseconds a step, None when not measured.
+    human limit; `step_us_*` are wall microseconds a step, None when not measured. Gate courses have the keys of
+    `gate_summary`, too.
     """
     weight = float(recording.header["mass"]) * STANDARD_GRAVITY
     total = np.linalg.norm(recording.snow_force.sum(axis=1), axis=1)
     timing = np.asarray(step_seconds or [], dtype=float) * 1e6
+    gates = recorded_gates(recording)
     worst = int(np.argmax(recording.torque_ratio.max(axis=0))) if len(recording.time) else 0
     return {
         "status": recording.status,
@@ -46,6 +49,7 @@ def summarise(recording: Recording, step_seconds: list[float] | None = None) -> 
         "snow_force_max_bw": _largest(total) / weight,
         "speed_max": _largest(recording.speed),
         "speed_end": _last(recording.speed),
+        **(gate_summary(gates) if gates else {}),
         "step_us_median": float(np.median(timing)) if len(timing) else None,
         "step_us_p99": float(np.percentile(timing, 99)) if len(timing) else None,
         "spec_hash": recording.header["spec_hash"],

@@ -80,7 +80,8 @@ class Recording:
 
     `header`: dict with `spec` (the run document as TOML), `spec_hash`, `model_hash`, `versions`, `seed`, `status`
     ("finished", "fell", "cancelled", "diverged"), `status_detail` ({time, what, where, why} or {}), `body_names`,
-    `joint_names`, `actuated_joint_names`, `time_step`, `gravity`, `mass`.
+    `joint_names`, `actuated_joint_names`, `time_step`, `gravity`, `mass`, `gates` (`Gates.lists`: `position` (k, 3) [m,
+    world] of the poles' feet, `side` +1 or -1, `distance` [m] asked; {} for a course without gates).
     Arrays: `time` [s], `arc_length` of the skier's place [m], `progress` in the plan [s, planned], `speed` of the
     centre of mass [m/s]; `qpos` (n, 42), `qvel` (n, 41), `tau` (n, 31) [N m]; `snow_force` (n, 2, 3) on each ski
     [N, world]; `snow_edge_force` (n, 2, 2)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..body import SkierModel
 from ..control import Command, Controller, Dynamics, FreeSkis, gains_of
+from ..course import course_gates
 from ..frames import matrix_from_quaternion
 from ..gravity import GRAVITY
 from ..planning import BY_CLOCK, MotionPlan, Reference
@@ -40,6 +41,7 @@ class Simulation:
     def __init__(self, spec: RunSpec, plan: MotionPlan, model: SkierModel, terrain: Terrain) -> None:
         """Put the skier at the start of `plan`, moving as planned."""
         self.spec, self.plan, self.model = spec, plan, model
+        self.gates = course_gates(spec, terrain)
         self.time_step = spec.simulation.time_step
         self.snow = Snow.of(spec.snow, spec.skier)
         self.reference = Reference(plan, model)
@@ -209,6 +211,7 @@ class Simulation:
             "time_step": self.time_step,
             "gravity": GRAVITY.tolist(),
             "mass": self.model.mass,
+            "gates": self.gates.lists() if self.gates else {},
         }
 
 

@@ -129,6 +129,27 @@ def test_title_says_what_is_compared():
     assert any(text.get_text().endswith("s between them, open loop, rigid lean") for text in figure.texts)
 
 
+def test_report_without_gates_has_no_panel_for_them(figure):
+    assert not any("Gates" in axes.get_title(loc="left") for axes in figure.axes)
+    assert figure.get_size_inches().tolist() == list(report_figure.SIZE_INCHES)
+
+
+def test_report_with_gates_is_taller_and_shows_them_twice():
+    drawn = report_figure.draw_figure(synthetic_recording(gates=4))
+    assert drawn.get_size_inches()[1] == report_figure.SIZE_INCHES[1] + report_figure.GATE_INCHES
+    assert {"1", "2", "3", "4"} <= set(texts(panel(drawn, "Track")))
+    assert "Gates: 4 of 4 passed, distance of the pole" in texts(panel(drawn, "Gates"))
+    assert len(drawn.axes) == 13  # track, colour bar, gates, ten over time
+    last = max(axes.get_position().y1 for axes in drawn.axes if axes.get_xlabel() == "s")
+    assert last < panel(drawn, "Gates").get_position().y0, "time runs along the lowest plots only"
+
+
+def test_plan_view_of_gates_says_how_much_wider_it_is_drawn():
+    drawn = report_figure.draw_figure(synthetic_recording(gates=4))
+    axes = panel(drawn, "Track")
+    assert axes.get_aspect() == 2.0 and "drawn 2 times wider than it is" in axes.get_title(loc="left")
+
+
 @pytest.mark.parametrize(
     ("course", "rows", "words"),
     [

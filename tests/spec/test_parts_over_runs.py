@@ -83,7 +83,8 @@ def test_words_about_runs_are_true_of_each_other():
     assert gentle.course.start_speed == min(run.course.start_speed for run in spec.values())
     assert short.course.turn_radius == min(run.course.turn_radius for run in spec.values())
     assert short.course.turn_duration == min(run.course.turn_duration for run in spec.values())
-    assert giant.course.start_speed == max(run.course.start_speed for run in spec.values())
+    fastest = sorted(spec, key=lambda name: spec[name].course.start_speed)[-2:]
+    assert fastest == ["giant_slalom", "deep_carving"]  # "Fast", and "Racing"
     assert spec["paper_r25"].course.turn_radius == max(run.course.turn_radius for run in spec.values())
     assert spec["paper_fig15"].course.transition_duration < spec["paper_main"].course.transition_duration
     for name in ("beginner_turns", "short_turns", "giant_slalom", "medium_carving"):

@@ -6,8 +6,18 @@ import numpy as np
 import pytest
 
 from ski_addon.body.skeleton import build_skeleton
-from ski_addon.report.clearance import POLE_RADIUS, SkiPlaces, gate_clearances, gate_summary, pole_distances, ski_places
-from ski_addon.spec import SkierSpec
+from ski_addon.course import Gates
+from ski_addon.simulation import GatePassing, gate_summary, recorded_gates
+from ski_addon.simulation.clearance import (
+    POLE_RADIUS,
+    SkiPlaces,
+    gate_clearances,
+    measure_gates,
+    pole_distances,
+    ski_places,
+)
+from ski_addon.spec import RunSpec, SkierSpec
+from tests.synthetic_recording import synthetic_recording
 
 LENGTH, WIDTH, STANCE = 1.6, 0.08, 0.24
 
@@ -78,20 +88,63 @@ def test_gates_that_were_not_reached_have_no_clearance():
     assert np.isnan(gate_clearances(stopped, poles, np.ones(4))).all()
 
 
-def test_summary_counts_passed_gates_from_a_recording_of_the_skeleton():
-    """The skier stands upright and slides down the x axis; skis are where kinematics says."""
+def gates(places, sides, asked=0.5) -> Gates:
+    """Gates at `places` (n, 3)."""
+    return Gates(np.array(places, dtype=float), np.array(sides, dtype=np.int8), np.full(len(sides), asked))
+
+
+def test_passing_of_a_recorded_skeleton_is_where_kinematics_has_its_skis():
+    """The skier stands upright and slides down the x axis."""
     skeleton = build_skeleton(SkierSpec(mass=75, height=1.8))
     qpos = np.zeros((3000, skeleton.nq))
     qpos[:, 0], qpos[:, 2], qpos[:, 3] = np.linspace(-15.0, 15.0, 3000), 1.0, 1.0
     skis = ski_places(skeleton, qpos)
     outer = float(skis.middle[0, 0, 1]) + 0.5 * skeleton.ski_width
     assert float(skis.middle[0, 1, 1]) == pytest.approx(-float(skis.middle[0, 0, 1]))
-    poles = np.array([[-5.0, 0.6, -3.0], [0.0, -0.6, 2.0], [5.0, -0.6, 0.0], [40.0, 0.6, 0.0]])
-    summary = gate_summary(skeleton, qpos, poles, np.array([1, -1, 1, 1]))
-    assert summary["gates"] == 4 and summary["gates_passed"] == 2
-    assert summary["gate_passed"] == [True, True, False, False]
+    poles = [[-5.0, 0.6, -3.0], [0.0, -0.6, 2.0], [5.0, -0.6, 0.0], [40.0, 0.6, 0.0]]
+    passing = measure_gates(skeleton, qpos, gates(poles, [1, -1, 1, 1]))
     gap = 0.6 - outer - POLE_RADIUS
-    assert summary["gate_clearance_m"][:3] == pytest.approx([gap, gap, -gap], abs=1e-6)
-    assert summary["gate_clearance_m"][3] is None and summary["gate_distance_m"][3] is None
-    assert summary["gate_distance_m"][:3] == pytest.approx([0.6, 0.6, 0.6], abs=1e-4)
-    assert summary["gate_clearance_min_m"] == pytest.approx(-gap, abs=1e-6)
+    np.testing.assert_allclose(passing.clearance, [gap, gap, -gap, np.nan], atol=1e-6)
+    np.testing.assert_allclose(passing.distance, [0.6, 0.6, 0.6, np.nan], atol=1e-4)
+    np.testing.assert_array_equal(passing.passed, [True, True, False, False])
+
+
+def test_no_steps_reach_no_gates():
+    skeleton = build_skeleton(SkierSpec())
+    passing = measure_gates(skeleton, np.zeros((0, skeleton.nq)), gates([[0, 1, 0], [9, -1, 0]], [1, -1]))
+    assert np.isnan(passing.distance).all() and not passing.passed.any()
+    assert gate_summary(passing)["gate_clearance_min_m"] is None
+
+
+def test_summary_holds_plain_numbers_and_names_gates_from_one():
+    distance, clearance = np.array([0.6, 0.5, 0.4, np.nan]), np.array([0.3, -0.2, 0.1, np.nan])
+    passing = GatePassing(gates(np.zeros((4, 3)), [1, -1, 1, -1]), distance, clearance)
+    assert gate_summary(passing) == {
+        "gates": 4,
+        "gates_passed": 2,
+        "gates_missed": [2, 4],
+        "gate_distances_m": [0.6, 0.5, 0.4, None],
+        "gate_clearances_m": [0.3, -0.2, 0.1, None],
+        "gate_clearance_min_m": -0.2,
+    }
+
+
+def test_gates_of_a_recording_are_those_of_its_header_and_the_skier_that_of_its_document():
+    """The skier of the recording glides along its track, upright, with skis along it."""
+    spec = RunSpec().with_overrides({"skier.height": 1.9})
+    recording = synthetic_recording(spec, gates=5)
+    passing = recorded_gates(recording)
+    assert passing.gates.position.tolist() == recording.header["gates"]["position"]
+    np.testing.assert_allclose(passing.distance, passing.gates.distance, atol=0.01)
+    narrow = ski_places(build_skeleton(spec.skier), recording.qpos[:1]).middle[0, 0]
+    half_stance = np.linalg.norm(narrow - recording.track_position[0, :2])
+    expected = passing.gates.distance - half_stance - 0.5 * spec.skier.ski_width - POLE_RADIUS
+    np.testing.assert_allclose(passing.clearance, expected, atol=0.04)  # the skis' ends stand off the curved track
+    assert passing.passed.all()
+
+
+def test_other_recordings_and_those_of_earlier_versions_have_no_gates():
+    recording = synthetic_recording()
+    assert recorded_gates(recording) is None
+    recording.header["gates"] = {}
+    assert recorded_gates(recording) is None

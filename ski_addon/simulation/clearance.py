@@ -1,4 +1,4 @@
-"""How the skis passed the gates: on which side, and how near."""
+"""How the skis passed the gates of a course: on which side, and how near."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..body.kinematics import forward_kinematics
-from ..body.skeleton import Skeleton
+from ..body.skeleton import Skeleton, build_skeleton
+from ..course.gates import Gates
+from ..spec import RunSpec
+from .recording import Recording
 
 POLE_RADIUS = 0.015
 """Half the thickness of a gate's pole [m]."""
@@ -31,6 +34,62 @@ class SkiPlaces:
     def part(self, which: np.ndarray) -> SkiPlaces:
         """Return the skis at some of the steps."""
         return SkiPlaces(self.middle[which], self.along[which], self.across[which], self.half_length, self.half_width)
+
+
+@dataclass(frozen=True)
+class GatePassing:
+    """How the gates of a course were passed; arrays (n,), NaN for gates that were not reached.
+
+    `distance` [m] is the smallest from the pole to the middle between the skis, what `gates.distance` asks for;
+    `clearance` [m] is what `gate_clearances` gives.
+    """
+
+    gates: Gates
+    distance: np.ndarray
+    clearance: np.ndarray
+
+    @property
+    def passed(self) -> np.ndarray:
+        """Whether both skis passed each pole on its side without touching it (n,)."""
+        return np.nan_to_num(self.clearance, nan=-1.0) > 0.0
+
+
+def recorded_gates(recording: Recording) -> GatePassing | None:
+    """Return how the gates of a recording were passed, or None for a course without gates."""
+    gates = Gates.from_lists(recording.header.get("gates", {}))
+    if not len(gates):
+        return None
+    skier = RunSpec.from_text(recording.header["spec"], "the run document in the recording").skier
+    return measure_gates(build_skeleton(skier), recording.qpos, gates)
+
+
+def measure_gates(skeleton: Skeleton, qpos: np.ndarray, gates: Gates) -> GatePassing:
+    """Return how `gates` were passed by the skier in the recorded positions `qpos` (m, nq)."""
+    skis = ski_places(skeleton, qpos)
+    clearance = gate_clearances(skis, gates.position, gates.side)
+    distance = np.where(np.isfinite(clearance), pole_distances(skis, gates.position), np.nan)
+    return GatePassing(gates, distance, clearance)
+
+
+def gate_summary(passing: GatePassing) -> dict[str, Any]:
+    """Return how gates were passed as plain numbers: the keys of `summary.json` that only gate courses have.
+
+    `gates` and `gates_passed` count; `gates_missed` are the numbers, from 1, of those not passed on their side or not
+    reached. `gate_distances_m` and `gate_clearances_m` are those of `GatePassing`, None for gates not reached.
+    """
+    passed, reached = passing.passed, np.isfinite(passing.clearance)
+    return {
+        "gates": len(passed),
+        "gates_passed": int(passed.sum()),
+        "gates_missed": [int(number) for number in np.flatnonzero(~passed) + 1],
+        "gate_distances_m": _numbers(passing.distance),
+        "gate_clearances_m": _numbers(passing.clearance),
+        "gate_clearance_min_m": float(passing.clearance[reached].min()) if reached.any() else None,
+    }
+
+
+def _numbers(values: np.ndarray) -> list[float | None]:
+    return [float(value) if np.isfinite(value) else None for value in values]
 
 
 def ski_places(skeleton: Skeleton, qpos: np.ndarray) -> SkiPlaces:
@@ -61,28 +120,7 @@ def gate_clearances(skis: SkiPlaces, poles: np.ndarray, sides: np.ndarray) -> np
 def pole_distances(skis: SkiPlaces, poles: np.ndarray) -> np.ndarray:
     """Return the smallest horizontal distance (n,) [m] from each pole to the middle between the skis."""
     middle = skis.middle.mean(axis=1)
-    return np.array([np.min(np.linalg.norm(middle - pole[:2], axis=1)) for pole in poles])
-
-
-def gate_summary(skeleton: Skeleton, qpos: np.ndarray, poles: np.ndarray, sides: np.ndarray) -> dict[str, Any]:
-    """Return how the gates were passed, as plain numbers for a summary.
-
-    `gates` and `gates_passed` count; `gate_passed` says for each gate whether both skis passed it on its side;
-    `gate_clearance_m` and `gate_distance_m` are what `gate_clearances` and `pole_distances` give (None if not reached);
-    `gate_clearance_min_m` is the smallest clearance.
-    """
-    skis = ski_places(skeleton, qpos)
-    clearance, distance = gate_clearances(skis, poles, sides), pole_distances(skis, poles)
-    reached = np.isfinite(clearance)
-    passed = reached & (np.nan_to_num(clearance, nan=-1.0) > 0.0)
-    return {
-        "gates": len(poles),
-        "gates_passed": int(passed.sum()),
-        "gate_passed": [bool(value) for value in passed],
-        "gate_clearance_m": [float(value) if ok else None for value, ok in zip(clearance, reached, strict=True)],
-        "gate_distance_m": [float(value) if ok else None for value, ok in zip(distance, reached, strict=True)],
-        "gate_clearance_min_m": float(clearance[reached].min()) if reached.any() else None,
-    }
+    return np.array([np.min(np.linalg.norm(middle - pole[:2], axis=1), initial=np.inf) for pole in poles])
 
 
 def _clearance(skis: SkiPlaces, pole: np.ndarray, side: float) -> float:
