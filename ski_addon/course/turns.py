@@ -122,8 +122,8 @@ class _Motion:
 
 @dataclass(frozen=True)
 class _Glide:
-    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and a speed `most` [m/s] that braking
-    holds.
+    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and the speed `most` [m/s] braking
+    keeps to.
     """
 
     snow: Snow
