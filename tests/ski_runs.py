@@ -23,8 +23,10 @@ COARSE = {**MAIN, "simulation.time_step": 0.002}
 """The same in steps of 2 ms: half the time to compute, twice the tracking error."""
 FAST = {**COARSE, "course.start_speed": 12}
 """42 degrees of lean."""
-WEAK = {**FAST, "skier.strength": 0.42, "simulation.time_step": 0.004}
-"""The same with muscles that cannot do it: at their limits from the start, and a fall within two seconds."""
+WEAK = {**FAST, "skier.strength": 0.42, "simulation.time_step": 0.004, "technique.balance": "tracking"}
+"""The same with muscles that cannot do it and no steps aside: at their limits from the start, and a fall within two
+seconds.
+"""
 
 
 def preset(name: str, changes: Mapping[str, Any] | None = None) -> RunSpec:

@@ -122,9 +122,7 @@ class _Motion:
 
 @dataclass(frozen=True)
 class _Glide:
-    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and the speed `most` [m/s] braking
-    keeps to.
-    """
+    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and braking to `most` [m/s]."""
 
     snow: Snow
     steepness: float
