@@ -24,8 +24,9 @@ COARSE = {**MAIN, "simulation.time_step": 0.002}
 FAST = {**COARSE, "course.start_speed": 12}
 """42 degrees of lean."""
 WEAK = {**FAST, "skier.strength": 0.42, "simulation.time_step": 0.004, "technique.balance": "tracking"}
-"""The same with muscles that cannot do it: at their limits from the start, and, without steering to
-stay up, a fall within two seconds."""
+"""The same with muscles that cannot do it and no steps aside: at their limits from the start, and a fall within two
+seconds.
+"""
 
 
 def preset(name: str, changes: Mapping[str, Any] | None = None) -> RunSpec:

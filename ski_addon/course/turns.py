@@ -124,9 +124,7 @@ class _Motion:
 
 @dataclass(frozen=True)
 class _Glide:
-    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and a speed `most` [m/s] that braking
-    holds.
-    """
+    """What moves a skier: snow, the slope's sine and cosine `steepness`, `normal`, and braking to `most` [m/s]."""
 
     snow: Snow
     steepness: float

@@ -48,9 +48,13 @@ def draw_gates(axes: Any, passing: GatePassing) -> None:
     for side, color, words in ((1, LEFT, "left"), (-1, RIGHT, "right")):
         some = passed & (passing.gates.side == side)
         label = f"to the middle between the skis, turning {words} (bar: to the nearer ski)"
-        axes.plot(numbers[some], passing.distance[some], "o", color=color, markersize=5, label=label if any(some) else None)
+        axes.plot(
+            numbers[some], passing.distance[some], "o", color=color, markersize=5, label=label if any(some) else None
+        )
     if not passed.all():
-        axes.plot(numbers[~passed], 0.0 * numbers[~passed], "X", color=MISSED, markersize=8, clip_on=False, label="missed")
+        axes.plot(
+            numbers[~passed], 0.0 * numbers[~passed], "X", color=MISSED, markersize=8, clip_on=False, label="missed"
+        )
     axes.set_ylim(0, 1.2 * axes.get_ylim()[1])  # the panel is low: more room for the legend
     finish(axes, "", "m", columns=4)
     axes.set_title(f"Gates: {passed.sum()} of {len(passed)} passed, distance of the pole", pad=6)

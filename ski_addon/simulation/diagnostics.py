@@ -14,10 +14,10 @@ from .recording import Recording
 def summarise(recording: Recording, step_seconds: list[float] | None = None) -> dict[str, Any]:
     """Return the run's summary: the keys of `summary.json`.
 
-    `track_offset_max_m` is of the skis; `capture_margin_min_m` and `zmp_margin_min_m` are the least distances from losing
-    balance and from the border of the bearing edges. Lengths in metres, angles in degrees where the key says so, forces in body weights; `torque_ratio_max` is of the
-    human limit; `step_us_*` are wall microseconds a step, None when not measured. Gate courses have the keys of
-    `gate_summary`, too.
+    `track_offset_max_m` is of the skis; `capture_margin_min_m` and `zmp_margin_min_m` are the least distances from
+    losing balance and from the border of the bearing edges. Lengths are in metres, angles in degrees where the key
+    says so, forces in body weights; `torque_ratio_max` is of the human limit; `step_us_*` are wall microseconds a step,
+    None when not measured. Gate courses have the keys of `gate_summary`, too.
     """
     weight = float(recording.header["mass"]) * STANDARD_GRAVITY
     total = np.linalg.norm(recording.snow_force.sum(axis=1), axis=1)

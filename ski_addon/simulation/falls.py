@@ -71,8 +71,8 @@ class FallWatch:
     ) -> Fall | None:
         """Return the fall that has happened at this state, or None.
 
-        `ski_error` [m] is the largest one of a ski corner from where it is steered, `track_offset` [m] the skis' distance
-        from the track.
+        `ski_error` [m] is the largest one of a ski corner from where it is steered, `track_offset` [m] the distance of
+        the skis from the track.
         """
         dynamics = self._dynamics
         normal = self._terrain.normal(dynamics.com[0], dynamics.com[1])

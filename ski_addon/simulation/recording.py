@@ -93,7 +93,7 @@ class Recording:
     `torque_ratio` (n, 31) of the human limit, 0..1; `joint_margin` (n,) least distance of a hinge from its limit [rad];
     `push_force` (n, 3) sum of the pushes from outside [N, world] and `disturbance` (n, 3) what the skier felt of them;
     `track_offset` (n, 2) of the skis' middle and of the centre of mass to the left of the plan [m], `steering_offset`
-    (n,) of the line the skis are steered along; `capture_margin` (n,) [m]: positive while steering can keep the skier up;
+    (n,) of the line the skis are steered along; `capture_margin` (n,) [m]: positive while steering keeps the skier up;
     `zmp` (n, 2) where the load acts, along and to the left of the skis from their middle [m], and `zmp_margin` (n,) [m]
     from there to the border of the bearing edges. Errors and offsets are from the plan, not from the steered line.
     `steering` (n,) [rad] is the planned angle from the track to the skis, positive to the left: skids brake.

@@ -24,8 +24,8 @@ class SkiGauge:
         self._corners = np.array([(x, y, 0.0) for x in ends for y in edges]).T.copy()
 
     def corner_error(self, offset: np.ndarray, turn: np.ndarray) -> float:
-        """Return the largest distance [m] of a ski corner from where it should be, for skis that are `offset` (2, 3) [m]
-        and `turn` (2, 3) [rad, world] from there.
+        """Return the largest distance [m] of a ski corner from where it should be, for skis that are `offset` (2, 3)
+        [m] and `turn` (2, 3) [rad, world] from there.
         """
         worst = 0.0
         for ski in range(2):
@@ -47,8 +47,8 @@ class SkiGauge:
         return self.corner_error(offset, np.array(turn))
 
     def track_offset(self, value: np.ndarray) -> tuple[float, float]:
-        """Return how far [m] to the left of the plan `value` (width,) the middle of the skis and the centre of mass are,
-        across the track.
+        """Return how far [m] to the left of the plan `value` (width,) the middle of the skis and the centre of mass
+        are, across the track.
         """
         columns = self._columns
         left = _cross(value[columns["normal"]], value[columns["tangent"]])
@@ -77,8 +77,8 @@ class SkiGauge:
         return x, y, self._border(x, y, apart_x, apart_y, command.edge_angle)
 
     def _border(self, x: float, y: float, apart_x: float, apart_y: float, edge_angle: np.ndarray) -> float:
-        """Return the distance [m] of a point from the border of the bearing edges; the left ski is at (apart_x, apart_y),
-        the right one opposite.
+        """Return the distance [m] of a point from the border of the bearing edges; the left ski is at `apart_x`,
+        `apart_y`, the right one opposite.
         """
         left, right, front = [], [], self._half_length + abs(apart_x)
         for side, angle in zip((1.0, -1.0), edge_angle.tolist(), strict=True):

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ski_addon.control import Dynamics, Formulation, Gains, OsqpSolver, Solution, TaskGain
+from ski_addon.control import Controller, Dynamics, Formulation, Gains, OsqpSolver, Solution, TaskGain
 from ski_addon.control.formulation import Problem
 from ski_addon.control.tasks import Desired
 from ski_addon.pipeline import start_simulation
 from ski_addon.snow import Snow
-from ski_addon.spec import SkierSpec, SnowSpec
+from ski_addon.spec import PushSpec, SkierSpec, SnowSpec
 from tests.control.exact_solution import exact_solution, is_feasible
 from tests.control.naive_program import NaiveProgram
-from tests.ski_runs import FAST, WEAK, default_model, planned, random_configuration, simulated
+from tests.ski_runs import COARSE, FAST, WEAK, default_model, planned, random_configuration, simulated
 
 
 @dataclass(frozen=True)
@@ -43,10 +43,20 @@ def dense(formulation: Formulation, problem: Problem) -> NaiveProgram:
 @functools.cache
 def bank(weak: bool) -> tuple[Formulation, tuple[Recorded, ...]]:
     """Programs at recorded states of a run at 12 m/s and 42 degrees of lean, a strong skier's or a weak one's."""
-    # a controller that feels pushes would take the jumps between the states for some
+    # states are set by hand here: a skier who steers to stay up would feel a push at every leap from state to state
     changes = WEAK if weak else {**FAST, "technique.balance": "tracking"}
     recording, simulation = simulated("paper_main", changes), start_simulation(planned("paper_main", changes))
     controller, dynamics = simulation.controller, simulation.dynamics
+    recorded = recorded_programs(controller)
+    for i in range(1, 400, 20) if weak else (*range(2, 850, 60), *range(856, 1000, 8)):
+        dynamics.qpos[:], dynamics.qvel[:] = recording.qpos[i], recording.qvel[i]
+        dynamics.update()
+        controller.step(float(recording.progress[i]))
+    return controller.formulation, tuple(recorded)
+
+
+def recorded_programs(controller: Controller) -> list[Recorded]:
+    """A list to which every program that `controller` solves from now on is added."""
     solve, recorded = controller.solver.solve, []
 
     def recording_solve(problem: Problem) -> Solution:
@@ -56,11 +66,21 @@ def bank(weak: bool) -> tuple[Formulation, tuple[Recorded, ...]]:
         return solution
 
     controller.solver.solve = recording_solve
-    for i in range(1, 400, 20) if weak else (*range(2, 850, 60), *range(856, 1000, 8)):
-        dynamics.qpos[:], dynamics.qvel[:] = recording.qpos[i], recording.qvel[i]
-        dynamics.update()
-        controller.step(float(recording.progress[i]))
-    return controller.formulation, tuple(recorded)
+    return recorded
+
+
+def steered_bank() -> tuple[Formulation, list[Recorded]]:
+    """Every twentieth step that is re-planned after a push of 150 N in the first turn."""
+    push = PushSpec("abdomen", "left", 150.0, 0.3, 0.3)
+    simulation = start_simulation(planned("paper_main", {**COARSE, "push": (push,)}))
+    controller = simulation.controller
+    recorded, steered = recorded_programs(controller), []
+    while simulation.step_done < 800 and simulation.advance(1):
+        if controller.balance.blend > 0.5 and simulation.step_done % 20 == 0:
+            steered.append(recorded[-1])
+        recorded.clear()
+    assert simulation.running
+    return controller.formulation, steered
 
 
 def ordinary_bank() -> tuple[Formulation, tuple[Recorded, ...]]:
@@ -110,6 +130,16 @@ def test_steps_at_edge_switches_are_solved_to_a_thousandth():
         assert_solved(formulation, step, 1e-3, 1e-2)
     assert np.sum(np.array(fading) > 0) > 5, "no edge was fading"
     assert sum(limits_reached(formulation, step)[2] > 0 for step in steps) > 3, "no snow force reached a bound"
+
+
+def test_steps_of_a_skier_who_steers_to_stay_up_are_solved():
+    """Within two thousandths of the largest acceleration, muscles and hinges at their limits or not."""
+    formulation, steps = steered_bank()
+    assert len(steps) > 10 and sum(max(limits_reached(formulation, step)) > 0 for step in steps) > 5
+    for step in steps:
+        assert step.solution.status == 0 and step.solution.attempts == 1
+        largest = np.abs(step.solution.unknowns[: formulation.accelerations]).max()
+        assert_solved(formulation, step, 2e-3 * largest, 1e-2)
 
 
 def test_steps_at_torque_and_hinge_limits_are_solved():

@@ -130,11 +130,12 @@ def test_weak_skier_falls_and_the_reason_is_a_muscle():
     assert recording.torque_ratio.max() <= 1.0 + 1e-12
 
 
-def test_weak_skier_who_steers_stays_up():
-    """Where a plan asks too much, leaving it saves him."""
+def test_weak_skier_who_may_steer_aside_stays_up():
+    """The same muscles, at their limits as well: the skis give way to the outside instead of the body."""
     recording = simulated("paper_main", {**WEAK, "technique.balance": "steering"})
     assert recording.status == "finished" and recording.solver_status.max() == 0
-    assert 0.1 < np.abs(recording.steering_offset).max() < 3.0
+    assert np.mean(recording.torque_ratio.max(axis=1) > 0.999) > 0.5
+    assert 0.3 < np.abs(recording.track_offset[:, 0]).max() < 3.0
 
 
 def test_fall_is_kept_up_to_where_it_happened(tmp_path):
