@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from ski_addon.report.clearance import gate_summary
 
 from ski_addon.course import course_gates
-from ski_addon.report.clearance import gate_summary
 from tests.ski_runs import planned, simulated
 
 

@@ -8,10 +8,10 @@ import pytest
 from ski_addon.course import Gates
 from ski_addon.simulation import GatePassing
 
-matplotlib = pytest.importorskip("matplotlib")
-from matplotlib.figure import Figure
+pytest.importorskip("matplotlib")
+from matplotlib.figure import Figure  # noqa: E402
 
-from ski_addon.report import gate_panels, style
+from ski_addon.report import gate_panels, style  # noqa: E402
 
 COUNT = 5
 
