@@ -8,10 +8,10 @@ import pytest
 from ski_addon.course import Gates
 from ski_addon.simulation import GatePassing
 
-pytest.importorskip("matplotlib")
-from matplotlib.figure import Figure  # noqa: E402
+matplotlib = pytest.importorskip("matplotlib")
+from matplotlib.figure import Figure
 
-from ski_addon.report import gate_panels, style  # noqa: E402
+from ski_addon.report import gate_panels, style
 
 COUNT = 5
 
