@@ -10,9 +10,9 @@ from ..planning import Reference
 class Motion:
     """Reference values with their first and second derivatives by time, overwritten by every `read`.
 
-    `table` (3, width) in the columns of `Reference`, with its rows `value`, `velocity` and `acceleration`; `spin` and `spin_rate` (9,) [rad/s,
-    rad/s^2, world] of the left ski, the right ski and the pelvis, whose `turning` columns are by planned time;
-    `leg_freedom` is a factor on the weight of the legs' pose.
+    `table` (3, width) in the columns of `Reference`, with its rows `value`, `velocity` and `acceleration`; `spin` and
+    `spin_rate` (9,) [rad/s, rad/s^2, world] of the left ski, the right ski and the pelvis, whose `turning` columns are
+    by planned time; `leg_freedom` is a factor on the weight of the legs' pose.
     """
 
     def __init__(self, reference: Reference) -> None:

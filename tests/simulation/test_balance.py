@@ -20,8 +20,9 @@ def pushed(body: str, direction: str, force: float, balance: str = "steering"):
     return simulated("paper_main", {**SKIED, "push": push, "technique.balance": balance})
 
 
+@pytest.mark.slow  # a fall takes the solver many iterations
 def test_a_push_that_fells_the_skier_who_only_tracks_is_survived_by_steering():
-    tracked, steered = (pushed("abdomen", "left", 200.0, balance) for balance in ("tracking", "steering"))
+    tracked, steered = (pushed("abdomen", "left", 120.0, balance) for balance in ("tracking", "steering"))
     assert tracked.status == "fell" and steered.status == "finished"
     assert np.all(tracked.steering_offset == 0.0)
     offset = steered.track_offset[:, 0]
@@ -30,11 +31,16 @@ def test_a_push_that_fells_the_skier_who_only_tracks_is_survived_by_steering():
     assert steered.torque_ratio.max() <= 1.0 + 1e-12 and np.rad2deg(steered.joint_margin.min()) > -1.5
 
 
-def test_the_capture_margin_tells_who_falls():
-    """It stays positive through a push that is survived, and is lost before the fall of one that is not."""
-    tracked, steered = (pushed("abdomen", "left", 200.0, balance) for balance in ("tracking", "steering"))
-    assert steered.capture_margin.min() > 0.05
-    assert tracked.capture_margin.min() < steered.capture_margin.min()
+@pytest.mark.slow
+def test_the_capture_margin_is_lost_by_who_falls():
+    tracked = pushed("abdomen", "left", 120.0, "tracking")
+    lost = tracked.time[np.argmax(tracked.capture_margin < 0.0)]
+    assert tracked.status == "fell" and START < lost < tracked.time[-1]
+
+
+def test_the_capture_margin_stays_positive_through_a_push_that_is_survived():
+    steered = pushed("abdomen", "left", 200.0)
+    assert steered.status == "finished" and steered.capture_margin.min() > 0.05
     summary = summarise(steered)
     assert summary["capture_margin_min_m"] == steered.capture_margin.min()
     assert summary["track_offset_max_m"] == np.abs(steered.track_offset[:, 0]).max()

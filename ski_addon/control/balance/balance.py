@@ -37,8 +37,8 @@ class Balance:
     """Re-plans the near future when the skier is off the plan.
 
     After `update`: `replanned`, whether the motion was changed, and how far, `blend` 0..1; `margin` [m] the capture
-    margin, `divergent` [m] the divergent component off what the plan asks, `push` (3,) [N, world] the force from outside
-    as felt, and `steering` with the line of the skis.
+    margin, `divergent` [m] the divergent component off what the plan asks, `push` (3,) [N, world] the force from
+    outside as felt, and `steering` with the line of the skis.
     """
 
     def __init__(

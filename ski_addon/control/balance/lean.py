@@ -13,8 +13,8 @@ DEEPEST = 0.94
 SLOWEST = 0.5
 """Least speed [m/s] by which the direction of the steered line is judged."""
 FLATTEST, FLATTEN_PUSH, BEYOND_FLAT = math.radians(10.0), 2.0, math.radians(3.0)
-"""Skis are rolled by up to the first [rad] towards flat, and the third beyond, before a push that turns the body over the
-edges that bear by the second [m/s^2] or more: then the other edges hold.
+"""Skis are rolled by up to the first [rad] towards flat, and the third beyond, before a push that turns the body over
+the edges that bear by the second [m/s^2] or more: then the other edges hold.
 """
 
 
