@@ -116,8 +116,9 @@ class Replanner:
         return lifts
 
     def _turn(self, parts: range, heading: Heading, share: float, roll: float, roll_rate: float) -> None:
-        """Turn the references of `parts` (0, 1: skis, 2: pelvis) by `share` of the heading about the normal and roll them
-        to the left by `roll` [rad], rolling on at `roll_rate`.
+        """Turn the references of `parts` (0, 1: skis, 2: pelvis).
+
+        They turn by `share` of the heading about the normal and roll to the left by `roll` [rad], on at `roll_rate`.
         """
         motion = self._motion
         along, _, normal = motion.value[self._frame].reshape(3, 3).tolist()

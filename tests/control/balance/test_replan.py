@@ -1,4 +1,4 @@
-"""The re-planned motion: velocities that belong to its places, a body that goes on from where it is, skis on the line."""
+"""The re-planned motion: velocities that belong to its places, a body that goes on from where it is."""
 
 from __future__ import annotations
 
