@@ -222,3 +222,48 @@ def test_edge_and_ski_forces_add_up():
     np.testing.assert_allclose(normal[1, 0], points[1, 0, 0].sum())
     np.testing.assert_allclose(side[0, 1], points[0, 1, 1].sum())
     np.testing.assert_allclose(formulation.snow_force(unknowns)[:3], force.sum(axis=0), atol=1e-9)
+
+
+def test_load_moments_are_the_normal_forces_at_their_points():
+    formulation, pack = formulation_of(default_model())
+    dynamics = random_dynamics(default_model(), 2)
+    formulation.build(dynamics, random_desired(2), np.array([0.2, 0.2]), NORMAL)
+    unknowns = np.random.default_rng(3).uniform(0, 1, formulation.unknowns)
+    forces = unknowns[37:].reshape(2, 2, 2, pack.segments)[:, 0] * 100.0
+    along = (np.arange(pack.segments) + 0.5) * pack.length / pack.segments - 0.5 * pack.length
+    for ski, moment in enumerate(formulation.load_moments(unknowns)):
+        local = [np.sum(forces[ski] * along), 0.5 * pack.width * (forces[ski, 0] - forces[ski, 1]).sum(), 0.0]
+        np.testing.assert_allclose(moment, dynamics.ski_rotation(ski) @ local, atol=1e-9)
+
+
+def test_a_felt_push_is_reckoned_with_in_forces_and_torques():
+    """M q'' + h - outside = tau + J'f: rows, torques and residual all shift by the push."""
+    formulation, _ = formulation_of(default_model())
+    dynamics, edge = random_dynamics(default_model(), 4), np.array([0.1, 0.1])
+    unknowns = np.random.default_rng(4).normal(size=formulation.unknowns)
+
+    def look():
+        built = dense(formulation, formulation.build(dynamics, random_desired(4), edge, NORMAL))
+        return built, formulation.torques(dynamics, unknowns)
+
+    without, torque = look()
+    outside = 50.0 * np.random.default_rng(5).normal(size=37)
+    dynamics.outside = outside
+    felt, felt_torque = look()
+    scale = np.concatenate(
+        (np.full(6, 0.01), 1.0 / np.maximum(dynamics.model.torque_upper, -dynamics.model.torque_lower))
+    )
+    np.testing.assert_allclose(felt.lower[:37] - without.lower[:37], scale * outside, atol=1e-9)
+    np.testing.assert_allclose(felt.upper[:37] - without.upper[:37], scale * outside, atol=1e-9)
+    np.testing.assert_allclose(felt_torque - torque, -outside[6:], atol=1e-9)
+    for name in ("P", "q", "A"):
+        np.testing.assert_array_equal(getattr(felt, name), getattr(without, name))
+
+
+def test_freed_legs_are_those_of_lighter_gains():
+    dynamics, edge = random_dynamics(default_model(), 6), np.array([0.1, 0.1])
+    formulation, _ = formulation_of(default_model())
+    light = dataclasses.replace(Gains(), leg_pose=dataclasses.replace(Gains().leg_pose, weight=0.3 * 0.02))
+    lighter, _ = formulation_of(default_model(), light)
+    freed = dense(formulation, formulation.build(dynamics, random_desired(6), edge, NORMAL, 0.3))
+    assert_same(freed, dense(lighter, lighter.build(dynamics, random_desired(6), edge, NORMAL)))

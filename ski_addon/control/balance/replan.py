@@ -18,6 +18,8 @@ from .deviation import Deviation
 from .lean import Heading, Lean, flattening, measured_lean, steered_heading
 from .steering import Steering
 
+Vector = list[float]
+SKIS, PELVIS = range(2), range(2, 3)
 PELVIS_ROLL = 0.5
 """How much of the skis' roll off the plan the pelvis makes too."""
 PELVIS_TURN = 0.5
@@ -66,8 +68,9 @@ class Replanner:
         cross = _cross_matrix(axes[2])
         turn = _rotation(cross, axes[2], heading.angle)
         self._move_skis(steering, heading, self._lifts(roll, blend * lean.rate), axes[2], cross, turn)
-        self._turn_skis(heading, roll, blend * lean.rate, axes, turn)
-        self._turn_pelvis(heading, PELVIS_ROLL * blend * lean.angle, PELVIS_ROLL * blend * lean.rate, axes, cross)
+        self._turn(SKIS, heading, 1.0, roll, blend * lean.rate)
+        share = PELVIS_ROLL * blend
+        self._turn(PELVIS, heading, PELVIS_TURN, share * lean.angle, share * lean.rate)
         if blend > 0.0:
             self._move_com(blend, deviation, lean, axes[1:])
             self._free_legs(blend)
@@ -112,33 +115,29 @@ class Replanner:
             lifts[1, ski] = slope * (rate + roll_rate) - planned_slope * rate
         return lifts
 
-    def _turn_skis(self, heading: Heading, roll: float, roll_rate: float, axes: np.ndarray, turn: np.ndarray) -> None:
+    def _turn(self, parts: range, heading: Heading, share: float, roll: float, roll_rate: float) -> None:
+        """Turn the references of `parts` (0, 1: skis, 2: pelvis).
+
+        They turn by `share` of the heading about the normal and roll to the left by `roll` [rad], on at `roll_rate`.
+        """
         motion = self._motion
-        forward, normal = turn @ axes[0], axes[2]
-        turning = _times(_about(forward, -roll), _about(normal, heading.angle))
-        self._turn_quaternions(turning, (0, 1))
-        spins = motion.spin[:6].reshape(2, 3) @ turn.T
-        spins += heading.rate * normal - roll_rate * forward
-        motion.spin[:6] = spins.reshape(-1)
-        rates = motion.spin_rate[:6].reshape(2, 3) @ turn.T
-        rates += heading.acceleration * normal
-        motion.spin_rate[:6] = rates.reshape(-1)
-
-    def _turn_pelvis(
-        self, heading: Heading, roll: float, roll_rate: float, axes: np.ndarray, cross: np.ndarray
-    ) -> None:
-        motion, normal = self._motion, axes[2]
-        turn = _rotation(cross, normal, PELVIS_TURN * heading.angle)
-        forward = turn @ axes[0]
-        self._turn_quaternions(_times(_about(forward, -roll), _about(normal, PELVIS_TURN * heading.angle)), (2,))
-        motion.spin[6:9] = turn @ motion.spin[6:9] + PELVIS_TURN * heading.rate * normal - roll_rate * forward
-        motion.spin_rate[6:9] = turn @ motion.spin_rate[6:9] + PELVIS_TURN * heading.acceleration * normal
-
-    def _turn_quaternions(self, turning: tuple[float, ...], parts: tuple[int, ...]) -> None:
-        quaternions = self._motion.value[self._columns["quaternion"]]
+        along, _, normal = motion.value[self._frame].reshape(3, 3).tolist()
+        angle, spin, spin_rate = share * heading.angle, share * heading.rate, share * heading.acceleration
+        fx, fy, fz = forward = _turned(along, normal, angle)
+        nx, ny, nz = normal
+        turning = _times(_about(forward, -roll), _about(normal, angle))
+        quaternions = motion.value[self._columns["quaternion"]]
         for part in parts:
-            place = slice(4 * part, 4 * part + 4)
-            quaternions[place] = _times(turning, quaternions[place].tolist())
+            place, own = slice(3 * part, 3 * part + 3), slice(4 * part, 4 * part + 4)
+            quaternions[own] = _times(turning, quaternions[own].tolist())
+            x, y, z = _turned(motion.spin[place].tolist(), normal, angle)
+            motion.spin[place] = (
+                x + spin * nx - roll_rate * fx,
+                y + spin * ny - roll_rate * fy,
+                z + spin * nz - roll_rate * fz,
+            )
+            x, y, z = _turned(motion.spin_rate[place].tolist(), normal, angle)
+            motion.spin_rate[place] = x + spin_rate * nx, y + spin_rate * ny, z + spin_rate * nz
 
     def _free_legs(self, blend: float) -> None:
         """Let the legs be where they are."""
@@ -165,9 +164,22 @@ def _rotation(cross: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
     return out
 
 
-def _about(axis: np.ndarray, angle: float) -> tuple[float, float, float, float]:
-    """Return the quaternion of a turn by `angle` about `axis`."""
-    x, y, z = axis.tolist()
+def _turned(vector: Vector, axis: Vector, angle: float) -> Vector:
+    """Return `vector` turned by `angle` about the unit `axis`."""
+    x, y, z = vector
+    ax, ay, az = axis
+    cosine, sine = math.cos(angle), math.sin(angle)
+    part = (1.0 - cosine) * (x * ax + y * ay + z * az)
+    return [
+        cosine * x + sine * (ay * z - az * y) + part * ax,
+        cosine * y + sine * (az * x - ax * z) + part * ay,
+        cosine * z + sine * (ax * y - ay * x) + part * az,
+    ]
+
+
+def _about(axis: Vector, angle: float) -> tuple[float, float, float, float]:
+    """Return the quaternion of a turn by `angle` about the unit `axis`."""
+    x, y, z = axis
     sine = math.sin(0.5 * angle)
     return math.cos(0.5 * angle), sine * x, sine * y, sine * z
 

@@ -115,16 +115,3 @@ def test_the_capture_margin_falls_by_what_the_skier_leans_further():
     here, there = (steering.capture_margin(x, OMEGA, REACH) for x in (0.1, 0.15))
     assert here - there == pytest.approx(0.05)
     assert steering.capture_margin(-0.1, OMEGA, REACH) == pytest.approx(here)
-
-
-def test_steering_fades_when_it_can_do_nothing():
-    steering = Steering(REGULATOR, STEP)
-    for _ in range(200):
-        steering.update(0.3, OMEGA, REACH)
-        steering.advance()
-    offset = steering.offset
-    steering.fade(0.5)
-    assert 0.0 < steering.offset < offset
-    for _ in range(2000):
-        steering.fade(1.0)
-    assert abs(steering.offset) + abs(steering.rate) + abs(steering.acceleration) < 1e-9
