@@ -217,6 +217,7 @@ def _add_render(subparsers: _Subparsers) -> None:
     )
     parser.add_argument("source", metavar="RECORDING|DIR", help="recording.npz, or the folder it is in")
     _add_output(parser, "FILE.png", "picture to write (strobe.png beside the recording if not given)")
+    parser.add_argument("--stop", action="store_true", help="show the end of the run, where the skier stops")
 
 
 def _add_validate(subparsers: _Subparsers) -> None:

@@ -83,7 +83,7 @@ def render_command(arguments: argparse.Namespace) -> int:
     results.check_blender("rendering")
     path, target = _picture_paths(arguments, "strobe.png")
     with atomic.output_folder(target.parent):
-        results.run_blender_command("render", path, target)
+        results.run_blender_command("render", path, target, stop=arguments.stop)
     _talk(arguments).say(f"wrote {target}")
     return 0
 

@@ -189,25 +189,28 @@ def bake(recording: Recording, spec: RunSpec, target: Path) -> None:
         bake_file(recording, spec, target)
 
 
-def render_strobe(recording: Recording, spec: RunSpec, target: Path) -> None:
-    """Render one picture of the slope with the skier at several instants; raises `RenderError`."""
+def render_strobe(recording: Recording, spec: RunSpec, target: Path, *, stop: bool = False) -> None:
+    """Render one picture of the slope with the skier at several instants (`stop`: the last); raises `RenderError`."""
     with apart.silenced():
         from .blender.strobe import render_strobe as render
 
-        render(recording, spec, target)
+        render(recording, spec, target, stop=stop)
 
 
-def run_blender_command(name: str, recording_path: Path, target: Path) -> None:
+def run_blender_command(name: str, recording_path: Path, target: Path, **options: bool) -> None:
     """Run `bake` or `render` of a recording in a process of its own, and write `target` whole.
 
-    Inside Blender, and in that process itself, it is done here.
+    Inside Blender, and in that process itself, it is done here. `options` are switches of the command (`stop`).
     """
     if apart.inside_blender() or apart.is_apart():
         recording = load_recording(recording_path)
-        {"bake": bake, "render": render_strobe}[name](recording, recorded_spec(recording), target)
+        run: Callable[..., None] = {"bake": bake, "render": render_strobe}[name]
+        run(recording, recorded_spec(recording), target, **{option: on for option, on in options.items() if on})
         return
     with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
-        apart.run_apart([name, str(recording_path.resolve()), "--output", str(Path(temporary, target.name).resolve())])
+        output = str(Path(temporary, target.name).resolve())
+        switches = [f"--{option}" for option, on in options.items() if on]
+        apart.run_apart([name, str(recording_path.resolve()), "--output", output, *switches])
         atomic.move_all(Path(temporary), target.parent)
 
 

@@ -156,3 +156,21 @@ def test_report_is_drawn_beside_the_recording(run, blender, tmp_path):
     assert (code, err) == (0, "") and (tmp_path / "report.png").read_bytes().startswith(b"\x89PNG")
     assert run("report", tmp_path / "recording.npz", "-o", tmp_path / "other.png")[0] == 0
     assert files(tmp_path) == ["other.png", "recording.npz", "report.png"]
+
+
+def test_the_end_of_a_run_is_rendered_when_asked_for(run, blender, monkeypatch, tmp_path):
+    asked = []
+    monkeypatch.setattr(results, "render_strobe", lambda *_, **options: asked.append(options))
+    (tmp_path / "recording.npz").write_text("")
+    assert run("render", tmp_path, "--stop")[0] == 0
+    assert run("render", tmp_path)[0] == 0
+    assert asked == [{"stop": True}, {}]
+
+
+def test_a_process_apart_is_asked_for_the_end_too(run, blender, monkeypatch, tmp_path):
+    started = []
+    monkeypatch.setattr(results.apart, "is_apart", lambda: False)
+    monkeypatch.setattr(results.apart, "run_apart", started.append)
+    (tmp_path / "recording.npz").write_text("")
+    assert run("render", tmp_path, "--stop")[0] == 0
+    assert started[0][0] == "render" and started[0][-1] == "--stop"

@@ -44,7 +44,8 @@ def test_a_pole_in_the_way_is_knocked_over_ahead_and_away(spec, recording, left:
     assert swing.towards[0] > 0.7 and swing.towards[1] * left > 0.0
     assert np.linalg.norm(swing.towards) == pytest.approx(1.0)
     assert 60.0 < np.degrees(swing.angle.max()) <= np.degrees(gate_motion.FLATTEST)
-    assert np.all(swing.angle >= swing.pushed - 1e-12)
+    touched = swing.pushed > 0.0
+    assert np.all(swing.angle[touched] >= swing.pushed[touched] - 1e-12)
     assert abs(swing.time[np.argmax(swing.angle)] - 2.0) < 2.0 / SPEED
 
 

@@ -118,21 +118,37 @@ def test_a_strobe_picture_s_gates_lie_clear_of_every_skier(core, scene) -> None:
     np.testing.assert_allclose(tilts, [0.0, 0.6], atol=1e-3)
 
 
+def run_into_a_gate(core: Any) -> tuple[Any, Any]:
+    """A recording, and the run document of a course whose first gate stands in the skier's way and second far off."""
+    recording = make_recording(core, duration=3.0, **{"course.kind": "gates", "course.gate_setting": "list"})
+    text = core("blender.bake").recorded_run(recording).to_toml()
+    rows = "[[gate]]\nx = 9.0\ny = 1.8\n[[gate]]\nx = 20.0\ny = -6.0\n"
+    return recording, core("spec").RunSpec.from_text(text + rows, "gates")
+
+
 def test_a_bake_s_gates_give_way_where_the_skier_leans_into_them(core, scene) -> None:
     import bpy
 
     update, channels = core("blender.ground").update_ground, core("blender.channels")
-    changes = {"course.kind": "gates", "course.gate_setting": "list"}
-    recording = make_recording(core, duration=3.0, **changes)
-    spec = core("blender.bake").recorded_run(recording)
-    spec = core("spec").RunSpec.from_text(
-        spec.to_toml() + "[[gate]]\nx = 9.0\ny = 1.8\n[[gate]]\nx = 20.0\ny = -6.0\n", "gates"
-    )
+    recording, spec = run_into_a_gate(core)
     ground = update(recording, spec, scene, None)
-    swinging = [obj.name for obj in ground.all_objects if obj.animation_data]
-    assert swinging == ["Gate 1"]
+    assert [obj.name for obj in ground.all_objects if obj.animation_data] == ["Gate 1"]
     update(recording, spec, scene, ground)
     assert len([action for action in bpy.data.actions if action.get(channels.MARK)]) == 1
+
+
+def test_a_baked_file_s_gates_swing_when_the_skier_passes(core, scene, tmp_path) -> None:
+    import bpy
+
+    recording, spec = run_into_a_gate(core)
+    core("blender.headless").bake_file(recording, spec.with_overrides({"bake.frame_start": 101}), tmp_path / "a.blend")
+    now, tilts = bpy.context.scene, []
+    for frame in range(101, 174):  # 3 s at 24 frames a second
+        now.frame_set(frame)
+        tilts.append(np.degrees(np.arccos(min(bpy.data.objects["Gate 1"].matrix_world[2][2], 1.0))))
+    assert max(tilts) > 45.0
+    assert abs(int(np.argmax(tilts)) - 24 * 9.0 * np.cos(np.radians(10.0)) / 6.0) < 6.0
+    assert tilts[0] < 0.1
 
 
 def test_a_stage_has_its_gates(core, scene) -> None:
