@@ -38,7 +38,7 @@ def test_stages_are_parts_of_the_step_and_most_of_it(result):
 
 
 def test_claim_29_planning_and_control_take_no_longer_than_the_papers(result):
-    """0.05 ms and 21.22 ms a step on its laptop; both together, for our planner looks ahead and takes a little longer."""
+    """0.05 ms and 21.22 ms a step on its laptop; both together, for our planner takes a little longer."""
     assert result["planning_us"] > 0.0
     assert result["planning_us"] + result["step_us"]["median"] < 50.0 + 21220.0
 
