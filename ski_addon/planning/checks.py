@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 RELIEF_KEYS = {"bumps": "bump_height", "moguls": "mogul_height"}
 """Key of the height of a bumpy `slope.kind`."""
-HALF_ABSORBED = 0.5
-"""Share of bumps that legs take up on a height that is named as one that works."""
+NAMED_SHARE = {"bumps": 0.5, "moguls": 1.0}
+"""Share of bumps that legs take up at a height that is named as one that works; moguls are too short for less."""
 
 
 def _place(line: Line, index: int) -> str:
@@ -34,7 +34,7 @@ def check_ground(spec: RunSpec, stance: Stance) -> None:
     """Raise `SpecError` for bumps or moguls that nobody can stand over [SG19 sec. 7.2, with its 3 m high bumps].
 
     Legs need not take up all of a bump, so only sides that are too steep are refused; the height that would work is one
-    of which they can take up half.
+    of which they can take up a good share.
     """
     from ..terrain import check_bumps
 
@@ -42,7 +42,7 @@ def check_ground(spec: RunSpec, stance: Stance) -> None:
     try:
         check_bumps(spec.slope, reach, absorption=0.0)
     except SpecError:
-        check_bumps(spec.slope, reach, absorption=HALF_ABSORBED)
+        check_bumps(spec.slope, reach, absorption=NAMED_SHARE[spec.slope.kind])
         raise
 
 

@@ -166,3 +166,24 @@ def test_claim_26_absorption_takes_most_of_the_bumps():
         variance[absorption] = np.array([height.var(), vertical.var(), force.var()])
         assert recording.status == "finished" and recording.ski_error.max() < 0.01
     assert np.all(variance[1.0] < 0.4 * variance[0.0])
+
+
+# -- pushes ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("body", "off"),
+    [
+        ("abdomen", 3.0),
+        pytest.param("head", 3.0, marks=pytest.mark.slow),
+        pytest.param("ski.R", 0.05, marks=pytest.mark.slow),
+        pytest.param("shank.L", 0.5, marks=pytest.mark.slow),
+    ],
+)
+def test_claim_24_push_of_200_newtons_is_survived(body, off):
+    """To the left for 0.5 s in a right turn, from 9 m/s: up to `off` [m] off the track, and back on it 5 s later."""
+    spec = preset("paper_main", {"course.turn_count": 3, "simulation.time_step": 0.004})
+    push = {"body": body, "direction": "left", "force": 200.0, "start": 0.5, "duration": 0.5}
+    recording, _ = run_simulation(make_plan(type(spec).from_dict({**spec.to_dict(), "push": [push]})))
+    assert recording.status == "finished"
+    assert 0.001 < np.abs(recording.track_offset[:, 0]).max() < off and recording.ski_error[-1] < 0.06
