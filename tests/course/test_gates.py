@@ -11,7 +11,7 @@ from ski_addon.spec import RunSpec, find_document
 from ski_addon.terrain import build_terrain
 from tests.course.gate_courses import EVEN, generated, listed
 
-SHIPPED = ("slalom", "giant_slalom_race", "uneven_slalom")
+SHIPPED = ("slalom", "giant_slalom_race", "uneven_slalom", "rolling_slalom", "rolling_giant_slalom")
 
 
 def course_of(spec: RunSpec):

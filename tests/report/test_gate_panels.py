@@ -8,7 +8,8 @@ import pytest
 from ski_addon.course import Gates
 from ski_addon.simulation import GatePassing
 
-matplotlib = pytest.importorskip("matplotlib")
+pytest.importorskip("matplotlib")
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from ski_addon.report import gate_panels, style
@@ -27,7 +28,7 @@ def passing():
 
 
 def drawn(draw, passing):
-    with matplotlib.rc_context(style.RC):
+    with rc_context(style.RC):
         axes = Figure().add_subplot()
         draw(axes, passing)
     return axes
