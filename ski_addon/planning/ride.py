@@ -31,7 +31,7 @@ SLOWEST = 0.15
 """A skier slower than this [m/s] has stopped, unless gravity is about to move him."""
 CONTROL_TIME = 0.45
 """Time [s] in which a speed above the wanted one is brought down."""
-AIM = 0.975
+AIM = 0.95
 """Share of the wanted speed that is aimed at: it is exceeded where a turn changes and nothing brakes."""
 LEAST_SIDE_FORCE = 1.5
 """Side force per mass [m/s^2] below which skis are turned less and less: a ski without it does not brake."""
@@ -176,7 +176,7 @@ class _Rider:
         *_, along, left, bend, _ = self.at(arc + 3.0 * LAG * speed)
         speed = math.sqrt(max(speed * speed + self.at(arc)[-1], 0.0))
         glide = self.snow.glide_acceleration(along, STANDARD_GRAVITY, speed)
-        brake = glide + (speed - AIM * AIM * self.control.most) / CONTROL_TIME
+        brake = glide + (speed - AIM * self.control.most) / CONTROL_TIME
         if brake <= 0.0:
             return 0.0
         side = bend * speed * speed - left

@@ -7,9 +7,20 @@ import re
 import numpy as np
 import pytest
 
+<<<<<<< HEAD
 from ski_addon.errors import PlanInfeasible, SpecError
+=======
+from ski_addon.errors import PlanInfeasible
+from ski_addon.gravity import GRAVITY
+>>>>>>> mend
 from ski_addon.pipeline import make_plan
-from tests.ski_runs import FRICTIONLESS, preset
+from ski_addon.planning import build_stance
+from ski_addon.planning.checks import check_reach
+from ski_addon.planning.line import TrackSpline
+from ski_addon.planning.pose import PlannedPoses
+from ski_addon.planning.ride import Body, SpeedControl, plan_ride
+from ski_addon.snow import Snow
+from tests.ski_runs import FRICTIONLESS, planned, preset
 
 EVEN = {
     **FRICTIONLESS,
@@ -83,10 +94,35 @@ def test_refusal_names_limit_and_place_where_the_lean_is_largest():
     assert "technique.inclination_max_deg = 55" in str(error) and "use a larger radius" in str(error)
 
 
-def test_leg_that_cannot_reach_is_refused():
-    error = refusal("paper_main", {**SHORT, "technique.knee_bend_deg": 30, "technique.angulation": -1})
-    assert error.speed is None
-    assert re.search(r"a leg would have to be \d+ mm longer", str(error))
+def test_leg_that_would_be_too_short_makes_the_skier_come_down():
+    """Nearly straight legs under an upright trunk: the outside leg cannot reach down to a ski in a lean."""
+    run = planned("paper_main", {**SHORT, "technique.knee_bend_deg": 30, "technique.angulation": -1})
+    plan, skeleton = run.plan, run.model.skeleton
+    stance = build_stance(skeleton, np.deg2rad(30))
+    over = np.linalg.norm(plan.com - plan.position, axis=1)
+    leaning, upright = np.argmax(np.abs(plan.inclination)), np.argmin(np.abs(plan.inclination))
+    assert over[leaning] < stance.height - 0.01 < over[upright]
+    knees = np.rad2deg(plan.pose[:, [skeleton.qpos_of(f"shank_y.{side}") for side in "LR"]])
+    assert 15.0 < knees.min() < 30.0
+
+
+@pytest.mark.parametrize(("ski", "error"), [(0, 0.031), (1, -0.031)])
+def test_leg_that_cannot_reach_is_refused(ski, error):
+    """Going lower answers every lean that was tried, so the check is asked about poses that are made up."""
+    run = planned("paper_main", SHORT)
+    snow = Snow.of(run.spec.snow, run.spec.skier)
+    body = Body(-(run.track.surface_normal @ GRAVITY), arc_length=run.track.arc_length, swing=0.0 * run.track.curvature)
+    line = TrackSpline(run.track).line(plan_ride(run.track, snow, body, SpeedControl()), snow)
+    reach_error = np.zeros((len(line.time), 2))
+    unused = np.zeros((len(line.time), 0))
+    check_reach(line, PlannedPoses(unused, unused, unused, unused, reach_error))
+    worst = int(np.argmax(line.time > 1.2))
+    reach_error[worst, ski] = error
+    with pytest.raises(PlanInfeasible) as caught:
+        check_reach(line, PlannedPoses(unused, unused, unused, unused, reach_error))
+    assert caught.value.speed is None
+    assert caught.value.place == f"the transition after turn 1 ({line.arc_length[worst]:.1f} m, 1.2 s)"
+    assert "a leg would have to be 31 mm longer or shorter than it can be" in str(caught.value)
 
 
 def test_hinge_past_its_range_is_refused_by_name():
