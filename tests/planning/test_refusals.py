@@ -7,12 +7,8 @@ import re
 import numpy as np
 import pytest
 
-<<<<<<< HEAD
 from ski_addon.errors import PlanInfeasible, SpecError
-=======
-from ski_addon.errors import PlanInfeasible
 from ski_addon.gravity import GRAVITY
->>>>>>> mend
 from ski_addon.pipeline import make_plan
 from ski_addon.planning import build_stance
 from ski_addon.planning.checks import check_reach
