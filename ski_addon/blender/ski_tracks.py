@@ -42,7 +42,10 @@ def ski_paths(recording: Recording, skeleton: Skeleton) -> list[tuple[Array, Arr
     paths = []
     for side, name in enumerate(("ski.L", "ski.R")):
         body = skeleton.body(name)
-        paths.append((position[:, body], rotation[:, body, :, 1], recording.edge_angle[index, side]))
+        place = position[:, body]
+        step = np.linalg.norm(np.diff(place, axis=0, prepend=place[:1] - SPACING), axis=1)
+        moves = step > 0.5 * SPACING  # a ski that comes to rest leaves no more track
+        paths.append((place[moves], rotation[moves, body, :, 1], recording.edge_angle[index[moves], side]))
     return paths
 
 
@@ -74,12 +77,12 @@ def groove_vertices(
 
 
 def _across_the_way(place: Array, normal: Array, ski_left: Array) -> Array:
-    """Return unit vectors (m, 3) in the surface, square to the way along `place`; the ski's own where it stands."""
+    """Return unit vectors (m, 3) in the surface, square to the way along `place`; the ski's own for a single place."""
     if len(place) < 2:
         return ski_left
-    across = np.cross(normal, np.gradient(place, axis=0))
-    moves = np.linalg.norm(across, axis=1, keepdims=True) > 0.1 * SPACING
-    return normalized(np.where(moves, across, ski_left))
+    at = np.arange(len(place))
+    ahead = place[np.minimum(at + 2, at[-1])] - place[np.maximum(at - 2, 0)]
+    return normalized(np.cross(normal, ahead))
 
 
 def _roughness(count: int, seed: int) -> Array:

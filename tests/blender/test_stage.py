@@ -88,6 +88,15 @@ def test_a_skidding_ski_leaves_a_band_as_wide_as_it_lies_across(core, scene, ter
     assert -0.02 < above.min() < 0.0 < above.max() < 0.06
 
 
+def test_a_ski_that_comes_to_rest_leaves_no_more_track(core, recording) -> None:
+    tools, skeleton = core("blender.ski_tracks"), skeleton_of(core, recording)
+    recording.qpos = np.array(recording.qpos)
+    recording.qpos[3000:] = recording.qpos[3000]  # the skis stand while the skier's place goes on
+    (place, left, edge), _ = tools.ski_paths(recording, skeleton)
+    assert len(place) == len(left) == len(edge) < 185
+    assert np.all(np.linalg.norm(np.diff(place, axis=0), axis=1) > 0.04)
+
+
 def test_the_same_tracks_come_out_every_time(core, scene, recording, terrain) -> None:
     tools, skeleton = core("blender.ski_tracks"), skeleton_of(core, recording)
     one, two = (tools.build_ski_tracks(recording, skeleton, terrain, scene.collection) for _ in range(2))
