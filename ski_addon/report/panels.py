@@ -126,6 +126,7 @@ def draw_offsets(axes: Any, recording: Recording) -> None:
     curve(axes, recording.time, 1000 * recording.track_offset[:, 1], INK, "centre of mass")
     steered = {"linewidth": 0.9, "linestyle": (0, (4, 2))}
     curve(axes, recording.time, 1000 * recording.steering_offset, LEFT, "steered line", **steered)
+    _show_at_least(axes, 1.0)
     finish(axes, "Off the plan, left is positive", "mm")
 
 
@@ -143,6 +144,7 @@ def draw_skid(axes: Any, recording: Recording) -> None:
     axes.axhline(0, color=QUIET, linewidth=0.8)
     angle = np.degrees(recording.steering)
     curve(axes, recording.time, angle, THIRD, f"skid, {_largest(np.abs(angle)):.3g} at most", linewidth=1.6)
+    _show_at_least(axes, 1.0)
     finish(axes, "Skis against the track, left is positive", "degrees")
 
 
@@ -163,6 +165,12 @@ def draw_speed(axes: Any, recording: Recording) -> None:
     room = max(0.5, 0.15 * (high - low))
     axes.set_ylim(max(0.0, low - room), high + room)
     finish(axes, "Speed", "m/s")
+
+
+def _show_at_least(axes: Any, size: float) -> None:
+    """Widen a plot about zero to `size` to both sides, so that rounding does not look like motion."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -size), max(high, size))
 
 
 def _least_mm(values: np.ndarray) -> str:

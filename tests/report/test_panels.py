@@ -191,6 +191,15 @@ def test_skid_is_the_recorded_angle_in_degrees(recording):
     np.testing.assert_allclose(found["skid, 12 at most"], np.degrees(recording.steering))
 
 
+@pytest.mark.parametrize(("draw", "name"), [(panels.draw_skid, "steering"), (panels.draw_offsets, "track_offset")])
+def test_rounding_is_not_blown_up_to_motion(recording, draw, name):
+    tiny = dataclasses.replace(
+        recording, steering_offset=0 * recording.time, **{name: 1e-15 * getattr(recording, name)}
+    )
+    low, high = drawn(draw, tiny).get_ylim()
+    assert low <= -1.0 and high >= 1.0
+
+
 def test_legs_are_seen_in_the_height_over_the_snow_and_bumps_over_a_straight_slope(recording):
     """A bump of 0.3 m that the legs take up: the snow rises, the body over it comes down."""
     bump = 0.3 * np.exp(-(((recording.time - 6.0) / 0.5) ** 2))[:, None] * recording.surface_normal
