@@ -50,7 +50,7 @@ def test_gates_are_passed_and_the_summary_says_so(recording):
     summary = summarise(recording)
     assert set(summary) >= GATE_KEYS
     assert (summary["gates"], summary["gates_passed"], summary["gates_missed"]) == (3, 3, [])
-    np.testing.assert_allclose(summary["gate_distances_m"], 0.5, atol=0.05)
+    np.testing.assert_allclose(summary["gate_distances_m"], recording.header["gates"]["distance"], atol=0.05)
     assert summary["gate_clearance_min_m"] == min(summary["gate_clearances_m"])
     assert 0.0 < summary["gate_clearance_min_m"] < 0.5
     assert "3 of 3 passed" in summary_lines(summary)[-1]
