@@ -21,6 +21,8 @@ TIGHTEST = 1.0 / 6.0
 """Most curvature of that turn [1/m]."""
 TIME_TO_TURN = 1.2
 """Time [s] to throw the skis across before they brake."""
+UNHELD = 1.8
+"""How much faster than the speed to hold a skier may be where there is nothing to brake against."""
 MARGIN = 6.0
 """Length of track [m] that is left over when the skier stands."""
 
@@ -35,9 +37,9 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
     heading = math.atan2(left[-1] - left[-2], down[-1] - down[-2])
     bend = min(EASY_TURN * STANDARD_GRAVITY / max(speed, 1.0) ** 2, TIGHTEST)
     turn = max(2.0 * abs(heading) / bend, 1.0)
-    distance = (
-        TIME_TO_TURN * (speed + 1.0) + 0.5 * (speed + 1.0) ** 2 / (0.9 * spec.technique.stop_deceleration) + MARGIN
-    )
+    fast = coasting_speed(track, spec, UNHELD)  # over bumps and on straights nobody holds the speed for sure
+    braking = 0.5 * (fast + 1.0) ** 2 / (0.9 * spec.technique.stop_deceleration)
+    distance = TIME_TO_TURN * (fast + 1.0) + braking + MARGIN
     along = np.arange(1, int((turn + distance) / SPACING)) * SPACING
     share = np.clip(along / turn, 0.0, 1.0)
     # the curvature rises and falls as one wave of a cosine
@@ -56,11 +58,11 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
     return Track(**{**vars(whole), "stop_from": straight})
 
 
-def coasting_speed(track: Track, spec: RunSpec) -> float:
-    """Return about how fast [m/s] a skier who only brakes to the limits asked for reaches the end of `track`."""
+def coasting_speed(track: Track, spec: RunSpec, held: float = 1.1) -> float:
+    """Return about how fast [m/s] a skier reaches the end of `track` who brakes to `held` times the speed asked for."""
     snow = Snow.of(spec.snow, spec.skier)
     along, into = track.tangent @ GRAVITY, -(track.surface_normal @ GRAVITY)
-    most = 1.1 * speed_to_hold(spec)
+    most = held * speed_to_hold(spec)
     energy = 0.5 * track.start_speed**2
     for i, step in enumerate(np.diff(track.arc_length).tolist()):
         speed = math.sqrt(2.0 * energy)

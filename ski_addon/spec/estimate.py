@@ -20,6 +20,10 @@ SECONDS_PER_STEP = 0.8e-3
 """Waiting time of one step [s], measured on one slow core with checks and recording."""
 SECONDS_TO_PLAN = 3.0
 """Waiting time of start, plan and writing [s]."""
+SECONDS_TO_RUN_OUT = 4.5
+"""What a stop takes before and after braking [s]: into the fall line, the skis across, and standing."""
+PLAIN_LENGTH = 35.0
+"""Usual length of a line over a slope that has no bumps [m]."""
 MEMORY_MAX = 8 * 2**30
 """A run whose recording is larger than this [bytes] is not started without being told to."""
 SIMULATED_MAX = 3600.0
@@ -52,6 +56,8 @@ class Estimate:
 def estimate(spec: RunSpec) -> Estimate:
     """Return what simulating `spec` would take, from what its course asks for."""
     seconds = _turning_seconds(spec.course) if spec.course.kind == "turns" else _way(spec) / _usual_speed(spec)
+    if spec.course.finish == "stop":
+        seconds += SECONDS_TO_RUN_OUT + _usual_speed(spec) / spec.technique.stop_deceleration
     steps = round(seconds / spec.simulation.time_step)
     return Estimate(seconds, steps, steps * BYTES_PER_STEP, SECONDS_TO_PLAN + steps * SECONDS_PER_STEP)
 
@@ -65,7 +71,9 @@ def _turning_seconds(course: CourseSpec) -> float:
 def _usual_speed(spec: RunSpec) -> float:
     """Return about the mean speed [m/s]: the one to hold, or somewhat more than at the start."""
     asked = [speed for speed in (spec.course.target_speed, spec.technique.speed_limit) if not isinstance(speed, str)]
-    return min(asked) if asked else max(1.4 * spec.course.start_speed, 6.0)
+    if asked:
+        return min(asked)
+    return max(spec.course.start_speed * (1.0 if spec.course.kind == "bumps" else 1.4), 6.0)
 
 
 def _way(spec: RunSpec) -> float:
@@ -76,7 +84,11 @@ def _way(spec: RunSpec) -> float:
     if course.kind == "bumps":
         moguls = spec.slope.mogul_count * spec.slope.mogul_spacing
         bumps = 2.0 * spec.slope.bump_count * spec.slope.bump_width
-        return spec.slope.bump_start + {"moguls": moguls, "bumps": bumps}.get(spec.slope.kind, 0.0)
+        length, wave = {
+            "moguls": (moguls, spec.slope.mogul_spacing),
+            "bumps": (bumps, 2.0 * spec.slope.bump_width),
+        }.get(spec.slope.kind, (PLAIN_LENGTH, 0.0))
+        return length + 2.0 * wave
     if course.kind == "gates" and course.gate_setting != "list":
         gate = gate_defaults(course)
         return (course.gate_count + 2) * math.hypot(gate.spacing, gate.offset)

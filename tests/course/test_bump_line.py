@@ -23,6 +23,10 @@ def track_of(spec: RunSpec):
     return build_track(spec, build_terrain(spec.slope))
 
 
+BESIDE = 1.75
+"""A line that turns runs between two columns of moguls, half their distance beside the one in the middle [m]."""
+
+
 @pytest.mark.parametrize("kind", ["moguls", "bumps", "plane"])
 def test_straight_line_goes_down_the_fall_line_over_all_crests(kind):
     spec = over(kind)
@@ -40,22 +44,22 @@ def test_turning_line_rounds_each_mogul_at_its_amplitude():
     np.testing.assert_allclose(crests[:, 0], crest_places(spec))
     view = np.stack((track.position[:, 0] / np.cos(np.radians(20)), track.position[:, 1]), axis=1)
     for k, crest in enumerate(crests):
-        gaps = np.linalg.norm(view - crest, axis=1)
+        gaps = np.linalg.norm(view - (crest + (0.0, BESIDE)), axis=1)
         near = int(np.argmin(gaps))
         side = (-1) ** k
         assert gaps[near] == pytest.approx(0.6, abs=2e-3)
-        assert side * (crest[1] - view[near, 1]) > 0.0  # turning left, the mogul is to the left
+        assert side * (crest[1] + BESIDE - view[near, 1]) > 0.0  # turning left, it is to the left of the line
         assert track.phase[near] == side and track.turn[near] == k + 1
 
 
 def test_turning_line_crosses_between_the_crests():
-    """Half-way from crest to crest the line is in the trough of the column."""
+    """Half-way from crest to crest the line is in the middle between two columns."""
     spec = over(turn_amplitude=0.6)
     track = track_of(spec)
     crests = crest_places(spec)
     down = track.position[:, 0] / np.cos(np.radians(20))
     middles = 0.5 * (crests[1:] + crests[:-1])
-    assert np.abs(np.interp(middles[1:-1], down, track.position[:, 1])).max() < 0.1
+    assert np.abs(np.interp(middles[1:-1], down, track.position[:, 1]) - BESIDE).max() < 0.1
 
 
 def test_run_length_is_the_length_of_the_run():
