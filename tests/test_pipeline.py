@@ -63,11 +63,11 @@ def test_document_is_checked_before_anything_is_planned(monkeypatch, section, ke
 def test_every_shipped_run_can_be_planned_within_its_own_limit(name):
     run = planned(name)
     assert lean(run.plan) <= run.spec.technique.inclination_max_deg
-    # only turns are asked for by their duration, but where a stop ends depends on the speed it begins with
-    rough = 0.4 if run.spec.course.kind != "turns" else 0.15 if run.spec.course.finish == "stop" else 0.05
+    rough = 0.05 if run.spec.course.kind == "turns" else 0.25  # only turns are asked for by their duration
     assert run.plan.duration == pytest.approx(estimate(run.spec).simulated_seconds, rel=rough)
-    going = run.plan.arc_length < run.track.stop_from
-    assert np.all(run.plan.speed[going] > 1.0) and np.all(run.plan.load > 0.0)
+    moving = run.plan.arc_length < run.track.stop_from
+    assert np.all(run.plan.speed[moving] > 1.0) and np.all(run.plan.load > 0.0)
+    assert (run.plan.speed[-1] < 0.02) == (run.spec.course.finish == "stop")
     assert all(np.all(np.isfinite(array)) for array in arrays(run.plan).values())
 
 
@@ -149,8 +149,8 @@ def test_keys_that_the_motion_does_not_depend_on_leave_the_plan_alone():
 
 def test_all_that_is_planned_is_read_only_and_of_one_length():
     run = planned("paper_main", SHORT)
-    count = len(run.plan.arc_length)
     for value in (run.plan, run.track):
+        count = len(value.arc_length)
         for name, array in arrays(value).items():
             assert len(array) == count, name
             with pytest.raises(ValueError, match="read-only"):
@@ -159,17 +159,21 @@ def test_all_that_is_planned_is_read_only_and_of_one_length():
         run.plan = None
 
 
-def test_plan_keeps_the_frames_of_its_track():
-    """The plan passes the track's places evenly in time: between the track's own."""
-    run = planned("paper_main")
+@pytest.mark.parametrize(("name", "near"), [("paper_main", 2e-4), ("slalom", 2e-3), ("bumps", 2e-3)])
+def test_plan_keeps_the_frames_of_its_track_at_its_own_places(name, near):
+    """The plan's places are even in planned time, the track's are not: between them nothing else is interpolated."""
+    run = planned(name)
     plan, track = run.plan, run.track
-    for name in ("position", "tangent", "surface_normal"):
-        between = [np.interp(plan.arc_length, track.arc_length, column) for column in getattr(track, name).T]
-        np.testing.assert_allclose(getattr(plan, name), np.array(between).T, atol=2e-4)
-    np.testing.assert_allclose(plan.curvature, np.interp(plan.arc_length, track.arc_length, track.curvature), atol=1e-4)
-    assert plan.arc_length[0] == 0.0 and plan.arc_length[-1] == pytest.approx(track.arc_length[-1], abs=1e-9)
-    assert set(plan.turn) == set(track.turn) and set(plan.phase) == set(track.phase)
-    np.testing.assert_allclose(run.terrain.height(*run.plan.position[:, :2].T), run.plan.position[:, 2], atol=1e-9)
+    assert np.ptp(np.diff(plan.time)) < 1e-9 < np.ptp(np.diff(plan.arc_length))
+    assert (plan.arc_length[0], plan.arc_length[-1]) == pytest.approx((0.0, track.length), abs=1e-6)
+    for key in ("position", "tangent", "surface_normal", "curvature"):
+        there = getattr(track, key).reshape(len(track.arc_length), -1)
+        between = np.stack([np.interp(plan.arc_length, track.arc_length, column) for column in there.T], axis=1)
+        np.testing.assert_allclose(getattr(plan, key).reshape(between.shape), between, atol=near, err_msg=key)
+    place = np.searchsorted(track.arc_length, plan.arc_length, side="right") - 1
+    np.testing.assert_array_equal(plan.phase, track.phase[place])
+    np.testing.assert_array_equal(plan.turn, track.turn[place])
+    np.testing.assert_allclose(run.terrain.height(*plan.position[:, :2].T), plan.position[:, 2], atol=1e-6)
 
 
 @pytest.fixture(scope="module")

@@ -24,6 +24,32 @@ def test_half_first_turn_takes_half_a_turn_less():
     assert estimate_of(course__half_first_turn=True).simulated_seconds == pytest.approx(5.5 * 1.0 + 6 * 1.5)
 
 
+def test_turns_from_rest_begin_when_the_skier_is_fast_enough():
+    gain = 9.81 * (np.sin(np.radians(10)) - 0.08 * np.cos(np.radians(10)))
+    seconds = estimate_of(course__start_speed=0, slope__angle_deg=10).simulated_seconds
+    assert seconds - estimate_of().simulated_seconds == pytest.approx(4.0 / gain)
+    assert estimate_of(course__start_speed=0, slope__angle_deg=0).simulated_seconds == estimate_of().simulated_seconds
+
+
+def test_stop_takes_longer_from_higher_speeds_and_with_softer_braking():
+    def stop(**changes):
+        glide = estimate_of(**changes).simulated_seconds
+        return estimate_of(course__finish="stop", **changes).simulated_seconds - glide
+
+    slow, fast = stop(course__target_speed=4), stop(course__start_speed=12, course__target_speed=12)
+    assert 4.0 < slow < fast < 12.0
+    soft = stop(course__target_speed=4, technique__stop_deceleration=2)
+    assert soft - slow == pytest.approx(4.0 / 2.0 - 4.0 / 4.0)
+
+
+def test_gliding_is_slower_on_gentler_slopes_and_never_faster_than_the_speed_to_hold():
+    way = {"course__kind": "bumps", "course__run_length": 200}
+    seconds = [estimate_of(**way, slope__angle_deg=angle).simulated_seconds for angle in (4, 8, 16)]
+    assert seconds[0] > seconds[1] > seconds[2]
+    assert estimate_of(**way, slope__angle_deg=16, course__target_speed=6).simulated_seconds == pytest.approx(200 / 6)
+    assert estimate_of(**way, slope__angle_deg=4, course__target_speed=40).simulated_seconds == seconds[0]
+
+
 def test_steps_memory_and_waiting_grow_as_the_time_step_shrinks():
     coarse, fine = estimate_of(simulation__time_step=0.002), estimate_of(simulation__time_step=0.0005)
     assert coarse.steps == 7500 and fine.steps == 30000

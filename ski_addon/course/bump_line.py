@@ -6,9 +6,11 @@ import numpy as np
 
 from ..errors import SpecError
 from ..spec import RunSpec
-from ..terrain import Terrain, mogul_crests
+from ..spec.bump_defaults import PAST_LAST, PLAIN_SPACING, bump_crests
+from ..spec.gate_defaults import MARGIN
+from ..terrain import Terrain
 from .fair_line import STEEPEST, FairLine, Poles, fair_line, turning_curvature
-from .gate_settings import MARGIN, alternate, run_in_of
+from .gate_settings import alternate, run_in_of
 from .labels import label_turns
 from .surface import track_on_surface
 from .track import Track
@@ -19,8 +21,6 @@ LEAST_BEND = 0.01
 """Slighter bends [1/m] are no turns."""
 RADIUS_MIN = 1.5
 """Turns round moguls are tighter than those round gates, but not tighter than this [m]."""
-_PLAIN_SPACING, _PLAIN_LENGTH = 3.5, 28.0
-"""Turns on a slope without bumps are set as if round moguls: their usual spacing, and on what length [m]."""
 
 
 def build_bump_track(spec: RunSpec, terrain: Terrain) -> Track:
@@ -30,7 +30,7 @@ def build_bump_track(spec: RunSpec, terrain: Terrain) -> Track:
     """
     crests = crest_places(spec)
     start = float(crests[0]) - run_in_of(spec.course, crests)
-    usual_end = float(crests[-1]) + MARGIN * _step(crests) + 3.0
+    usual_end = float(crests[-1]) + MARGIN * _step(crests) + PAST_LAST
     end = usual_end if isinstance(spec.course.run_length, str) else start + spec.course.run_length
     down, left, curvature = _turning(spec, crests[crests < end - MARGIN * _step(crests)])
     before = np.arange(down[0] - SPACING, start, -SPACING)[::-1]
@@ -43,14 +43,8 @@ def build_bump_track(spec: RunSpec, terrain: Terrain) -> Track:
 
 def crest_places(spec: RunSpec) -> np.ndarray:
     """Return the places (n,) [m down] that the line turns round: crests, or `course.turn_spacing` apart."""
-    slope, asked = spec.slope, spec.course.turn_spacing
-    if slope.kind == "moguls" and isinstance(asked, str):
-        return mogul_crests(slope, 0.0)[:, 0]
-    crest_to_crest = 2.0 * slope.bump_width if slope.kind == "bumps" else _PLAIN_SPACING
-    spacing = crest_to_crest if isinstance(asked, str) else asked
-    lengths = {"bumps": 2.0 * slope.bump_width * slope.bump_count, "moguls": slope.mogul_spacing * slope.mogul_count}
-    count = max(int(lengths.get(slope.kind, _PLAIN_LENGTH) / spacing + 1e-9), 1)
-    return slope.bump_start + spacing * np.arange(1, count + 1)
+    spacing, count = bump_crests(spec.slope, spec.course)
+    return spec.slope.bump_start + spacing * np.arange(1, count + 1)
 
 
 def _between_columns(spec: RunSpec) -> float:
@@ -62,7 +56,7 @@ def _between_columns(spec: RunSpec) -> float:
 
 
 def _step(crests: np.ndarray) -> float:
-    return float(crests[-1] - crests[-2]) if len(crests) > 1 else _PLAIN_SPACING
+    return float(crests[-1] - crests[-2]) if len(crests) > 1 else PLAIN_SPACING
 
 
 def _turning(spec: RunSpec, crests: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

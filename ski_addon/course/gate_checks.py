@@ -9,10 +9,10 @@ import numpy as np
 
 from ..errors import SpecError
 from ..spec import RunSpec
-from ..spec.gate_defaults import gate_defaults
+from ..spec.gate_defaults import MARGIN, gate_defaults
 from ..terrain import Terrain
 from .fair_line import FairLine, Poles, fair_line
-from .gate_settings import MARGIN, set_poles
+from .gate_settings import set_poles
 
 RADIUS_MIN = 3.0
 """No turn is tighter than this [m]."""

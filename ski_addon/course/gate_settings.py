@@ -6,13 +6,11 @@ import numpy as np
 
 from ..errors import SpecError
 from ..spec import CourseSpec, RunSpec
-from ..spec.gate_defaults import GIANT_SLALOM, SLALOM, SLALOM_SPACING_MAX, gate_defaults
+from ..spec.gate_defaults import GIANT_SLALOM, MARGIN, SLALOM, SLALOM_SPACING_MAX, gate_defaults, usual_run_in
 from .fair_line import Poles
 
 UNEVEN_SPACING, UNEVEN_OFFSET = 0.25, 0.4
 """Shares by which spacing and offset change at most, at full variation."""
-MARGIN = 1.5
-"""A line bends to its first gate, and away from its last, over this many times the distance from gate to gate."""
 
 
 def set_poles(spec: RunSpec) -> Poles:
@@ -24,14 +22,11 @@ def set_poles(spec: RunSpec) -> Poles:
 
 
 def run_in_of(course: CourseSpec, down: np.ndarray) -> float:
-    """Return the distance [m] from the start to the first of the places `down` (n,) [m].
-
-    The usual one starts at the slope's origin if the first gate stands far enough down for it.
-    """
+    """Return the distance [m] from the start to the first of the places `down` (n,) [m]."""
     if not isinstance(course.run_in, str):
         return course.run_in
-    usual = MARGIN * (float(down[1] - down[0]) if len(down) > 1 else gate_defaults(course).spacing)
-    return float(down[0]) if usual <= down[0] <= 3.0 * usual else usual
+    spacing = float(down[1] - down[0]) if len(down) > 1 else gate_defaults(course).spacing
+    return usual_run_in(float(down[0]), spacing)
 
 
 def alternate(first_turn: str, count: int) -> np.ndarray:

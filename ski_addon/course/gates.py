@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..spec import RunSpec
+from ..spec.gate_defaults import MARGIN
 from ..terrain import Terrain
 from .fair_line import FairLine, Poles, fair_line, turning_curvature
 from .gate_checks import check_line, check_places
-from .gate_settings import MARGIN, run_in_of, set_poles
+from .gate_settings import run_in_of, set_poles
 from .labels import label_turns
 from .surface import track_on_surface
 from .track import Track

@@ -8,7 +8,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .gate_defaults import gate_defaults
+from .bump_defaults import PAST_LAST, bump_crests
+from .gate_defaults import MARGIN, gate_defaults, usual_run_in
 
 if TYPE_CHECKING:
     from .run_spec import RunSpec
@@ -18,12 +19,16 @@ BYTES_PER_STEP = 3100
 """Memory of one recorded step [bytes]: about 195 numbers of 8 bytes, twice while the recording is put together."""
 SECONDS_PER_STEP = 0.8e-3
 """Waiting time of one step [s], measured on one slow core with checks and recording."""
+USUAL_FRICTION, USUAL_DRAG = 0.08, 0.003
+"""Friction of ski on snow at a usual speed, and drag [1/m], whoever skis on whatever snow."""
+SCHUSS_SPEED, LONGEST_SCHUSS = 4.0, 12.0
+"""Speed [m/s] that linked turns from rest begin with, and the longest time [s] it may take."""
+STOP_TURN = 4.4
+"""Sideways acceleration [m/s^2] of the turn into the fall line before a stop."""
+STAND_STILL = 3.0
+"""Time [s] of a stop without its braking: the skis are turned across, the last of the speed goes, the skier stands."""
 SECONDS_TO_PLAN = 3.0
 """Waiting time of start, plan and writing [s]."""
-SECONDS_TO_RUN_OUT = 4.5
-"""What a stop takes before and after braking [s]: into the fall line, the skis across, and standing."""
-PLAIN_LENGTH = 35.0
-"""Usual length of a line over a slope that has no bumps [m]."""
 MEMORY_MAX = 8 * 2**30
 """A run whose recording is larger than this [bytes] is not started without being told to."""
 SIMULATED_MAX = 3600.0
@@ -54,10 +59,13 @@ class Estimate:
 
 
 def estimate(spec: RunSpec) -> Estimate:
-    """Return what simulating `spec` would take, from what its course asks for."""
-    seconds = _turning_seconds(spec.course) if spec.course.kind == "turns" else _way(spec) / _usual_speed(spec)
+    """Return about what simulating `spec` would take, from what its course and slope ask for."""
+    if spec.course.kind == "turns":
+        seconds = _schuss_seconds(spec) + _turning_seconds(spec.course)
+    else:
+        seconds = _way(spec) / _mean_speed(spec, _way(spec))
     if spec.course.finish == "stop":
-        seconds += SECONDS_TO_RUN_OUT + _usual_speed(spec) / spec.technique.stop_deceleration
+        seconds += _stop_seconds(spec)
     steps = round(seconds / spec.simulation.time_step)
     return Estimate(seconds, steps, steps * BYTES_PER_STEP, SECONDS_TO_PLAN + steps * SECONDS_PER_STEP)
 
@@ -68,12 +76,37 @@ def _turning_seconds(course: CourseSpec) -> float:
     return turns * course.turn_duration + transitions * course.transition_duration
 
 
-def _usual_speed(spec: RunSpec) -> float:
-    """Return about the mean speed [m/s]: the one to hold, or somewhat more than at the start."""
+def _schuss_seconds(spec: RunSpec) -> float:
+    """Return about how long a skier who starts from rest runs straight before the first turn [s]."""
+    gain = _gain(spec)
+    if spec.course.start_speed > 0.0 or spec.course.entry != "straight" or gain <= 0.0:
+        return 0.0
+    return min(SCHUSS_SPEED / gain, LONGEST_SCHUSS)
+
+
+def _stop_seconds(spec: RunSpec) -> float:
+    """Return about how long a stop takes [s], with the turn into the fall line that leads to it."""
+    course = spec.course
+    speed = _mean_speed(spec, 50.0)
+    turn = 0.0
+    if course.kind == "turns":  # other lines end down the fall line
+        heading = 0.5 * speed * (course.turn_duration + course.transition_duration) / course.turn_radius
+        turn = 2.0 * min(heading, 1.2) * speed / STOP_TURN
+    return turn + speed / spec.technique.stop_deceleration + STAND_STILL
+
+
+def _gain(spec: RunSpec) -> float:
+    """Return about how quickly the slope speeds up a slow skier [m/s^2]."""
+    angle = math.radians(spec.slope.angle_deg)
+    return 9.81 * (math.sin(angle) - USUAL_FRICTION * math.cos(angle))
+
+
+def _mean_speed(spec: RunSpec, way: float) -> float:
+    """Return about the mean speed [m/s] over `way` [m]: of gliding, or the one to hold if that is less."""
     asked = [speed for speed in (spec.course.target_speed, spec.technique.speed_limit) if not isinstance(speed, str)]
-    if asked:
-        return min(asked)
-    return max(spec.course.start_speed * (1.0 if spec.course.kind == "bumps" else 1.4), 6.0)
+    terminal = _gain(spec) / USUAL_DRAG
+    end = terminal + (spec.course.start_speed**2 - terminal) * math.exp(-2.0 * USUAL_DRAG * way)
+    return min((0.5 * (spec.course.start_speed + math.sqrt(max(end, 1.0))), *asked))
 
 
 def _way(spec: RunSpec) -> float:
@@ -82,16 +115,13 @@ def _way(spec: RunSpec) -> float:
     if course.kind == "bumps" and not isinstance(course.run_length, str):
         return course.run_length
     if course.kind == "bumps":
-        moguls = spec.slope.mogul_count * spec.slope.mogul_spacing
-        bumps = 2.0 * spec.slope.bump_count * spec.slope.bump_width
-        length, wave = {
-            "moguls": (moguls, spec.slope.mogul_spacing),
-            "bumps": (bumps, 2.0 * spec.slope.bump_width),
-        }.get(spec.slope.kind, (PLAIN_LENGTH, 0.0))
-        return length + 2.0 * wave
+        spacing, count = bump_crests(spec.slope, course)
+        usual = usual_run_in(spec.slope.bump_start + spacing, spacing)
+        run_in = usual if isinstance(course.run_in, str) else course.run_in
+        return run_in + (count - 1 + MARGIN) * spacing + PAST_LAST
     if course.kind == "gates" and course.gate_setting != "list":
         gate = gate_defaults(course)
-        return (course.gate_count + 2) * math.hypot(gate.spacing, gate.offset)
+        return (course.gate_count - 1 + 2.0 * MARGIN) * math.hypot(gate.spacing, gate.offset)
     corners = [(row.x, row.y) for row in (spec.gate if course.kind == "gates" else spec.point)]
     return sum(math.dist(a, b) for a, b in itertools.pairwise(corners))
 

@@ -9,6 +9,9 @@ from .sections import CourseSpec
 SLALOM_SPACING_MAX = 15.0
 """Gates nearer than this [m] are passed as closely as slalom gates."""
 
+MARGIN = 1.5
+"""A line bends to its first gate, and away from its last, over this many times the distance from gate to gate."""
+
 
 @dataclass(frozen=True)
 class GateDefaults:
@@ -21,6 +24,15 @@ class GateDefaults:
 
 SLALOM = GateDefaults(10.0, 2.0, 0.5)
 GIANT_SLALOM = GateDefaults(24.0, 4.5, 1.0)
+
+
+def usual_run_in(first: float, spacing: float) -> float:
+    """Return the usual distance [m] from the start to the first gate or turn, which is `first` [m] down the slope.
+
+    The run starts at the slope's origin if the first gate stands far enough down for it.
+    """
+    usual = MARGIN * spacing
+    return first if usual <= first <= 3.0 * usual else usual
 
 
 def gate_defaults(course: CourseSpec) -> GateDefaults:

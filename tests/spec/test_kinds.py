@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from ski_addon.errors import SpecError
@@ -57,15 +59,24 @@ def test_given_spacing_and_offset_come_before_usual_ones():
         ({"course": {"kind": "gates", "gate_setting": "list"}, "gate": [{"x": 0, "y": 0}, {"x": 30, "y": 40}]}, 50.0),
         ({"course": {"kind": "path"}, "point": [{"x": 0, "y": 0}, {"x": 3, "y": 4}, {"x": 15, "y": 9}]}, 18.0),
         ({"course": {"kind": "bumps", "run_length": 80}}, 80.0),
-        ({"course": {"kind": "bumps"}, "slope": {"kind": "bumps", "bump_count": 5, "bump_width": 8}}, 90.0),
-        ({"course": {"kind": "bumps"}, "slope": {"kind": "moguls", "mogul_count": 8, "mogul_spacing": 3.5}}, 38.0),
+        ({"course": {"kind": "bumps"}, "slope": {"kind": "bumps", "bump_count": 5, "bump_width": 8}}, 117.0),
+        ({"course": {"kind": "bumps"}, "slope": {"kind": "moguls", "mogul_count": 8, "mogul_spacing": 3.5}}, 46.25),
     ],
 )
 def test_estimate_of_other_courses_is_their_way_at_the_speed_to_hold(content, way):
+    """A line over bumps leads half a wave more than one past the last crest, as one past gates does, and 3 m on."""
     content["course"]["target_speed"] = 4
     assert estimate(RunSpec.from_dict(content)).simulated_seconds == pytest.approx(way / 4.0)
 
 
-def test_estimate_of_a_run_from_rest_is_finite():
-    content = {"course": {"kind": "bumps", "run_length": 60, "start_speed": 0}}
-    assert estimate(RunSpec.from_dict(content)).simulated_seconds == pytest.approx(10.0)
+def test_estimate_of_a_run_from_rest_is_the_time_of_free_gliding():
+    content = {"course": {"kind": "bumps", "run_length": 60, "start_speed": 0}, "slope": {"angle_deg": 10}}
+    gain = 9.81 * (math.sin(math.radians(10)) - 0.08 * math.cos(math.radians(10)))
+    seconds = estimate(RunSpec.from_dict(content)).simulated_seconds
+    assert math.sqrt(2 * 60 / gain) < seconds < 1.15 * math.sqrt(2 * 60 / gain), "a little more, for drag"
+
+
+@pytest.mark.parametrize("angle", [0, 2])
+def test_estimate_of_a_run_from_rest_that_friction_would_hold_is_finite(angle):
+    content = {"course": {"kind": "bumps", "run_length": 60, "start_speed": 0}, "slope": {"angle_deg": angle}}
+    assert 60.0 < estimate(RunSpec.from_dict(content)).simulated_seconds < 200.0
