@@ -60,7 +60,7 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
 
 def coasting_speed(track: Track, spec: RunSpec, held: float = 1.1) -> float:
     """Return about how fast [m/s] a skier reaches the end of `track` who brakes to `held` times the speed asked for."""
-    snow = Snow.of(spec.snow, spec.skier)
+    snow = Snow.of(spec.snow, spec.skier, spec.technique.tuck)
     along, into = track.tangent @ GRAVITY, -(track.surface_normal @ GRAVITY)
     most = held * speed_to_hold(spec)
     energy = 0.5 * track.start_speed**2

@@ -99,7 +99,7 @@ def build_turn_track(spec: RunSpec, terrain: Terrain) -> Track:
     Raises `PlanInfeasible` when friction stops the skier.
     """
     steepness, normal = float(np.sin(terrain.mean_angle)), float(np.cos(terrain.mean_angle))
-    glide = _Glide(Snow.of(spec.snow, spec.skier), steepness, normal, speed_to_hold(spec))
+    glide = _Glide(Snow.of(spec.snow, spec.skier, spec.technique.tuck), steepness, normal, speed_to_hold(spec))
     schedule = turn_schedule(spec.course, _schuss_time(glide, spec.course.start_speed))
     if spec.technique.equations == "printed_sign":  # Algorithm 1 as it is printed: away from the lean
         schedule = replace(schedule, curvature=-schedule.curvature)

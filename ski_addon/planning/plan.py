@@ -86,7 +86,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     `technique.inclination_max_deg`, when friction stops the skier, or when the legs cannot reach;
     `SpecError` for bumps that nobody can stand over.
     """
-    stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg))
+    stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg), spec.technique.tuck)
     check_ground(spec, stance)
     sink = Sink(track)
     for _ in range(MOST_SINKS):
@@ -130,7 +130,7 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
 
 def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[Line, Pendulum]:
     """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
-    snow, spline = Snow.of(spec.snow, spec.skier), TrackSpline(track)
+    snow, spline = Snow.of(spec.snow, spec.skier, spec.technique.tuck), TrackSpline(track)
     control = speed_control(spec, track)
     body = Body(
         normal=-(track.surface_normal @ GRAVITY), swing=np.zeros(len(track.arc_length)), arc_length=track.arc_length

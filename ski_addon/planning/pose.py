@@ -17,7 +17,7 @@ from ..body.skeleton import SIDES
 from ..frames import quaternion_from_matrix, rotation_about
 from ..snow import edge_lift
 from .pendulum import Pendulum
-from .stance import PELVIS_PITCH, Stance
+from .stance import Stance
 
 BOOT_PLAY = np.deg2rad(4.0)
 """How much of the boot's 5 degrees of side play the plan uses; approached smoothly."""
@@ -73,7 +73,7 @@ def plan_poses(
     count = len(position)
     qpos = np.repeat(stance.qpos[None], count, axis=0)
     crouch = stance.height - np.hypot(pendulum.y, pendulum.h)
-    _lean_upper_body(skeleton, qpos, world_from_body, inclination, angulation, steering, crouch)
+    _lean_upper_body(skeleton, qpos, world_from_body, inclination, angulation, steering, crouch, stance.pitch)
     qpos[:, :3] += com - _com(skeleton, qpos)
     edge = np.repeat(inclination[:, None], 2, axis=1)
     for _ in range(25):
@@ -112,10 +112,11 @@ def _lean_upper_body(
     angulation: np.ndarray,
     steering: np.ndarray,
     crouch: np.ndarray,
+    pitch: float,
 ) -> None:
     pelvis_lean = (1.0 + angulation) * inclination
     pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("z", -PELVIS_TURN * steering)
-    qpos[:, 3:7] = quaternion_from_matrix(pelvis @ rotation_about("y", PELVIS_PITCH + CROUCH_PITCH["pelvis"] * crouch))
+    qpos[:, 3:7] = quaternion_from_matrix(pelvis @ rotation_about("y", pitch + CROUCH_PITCH["pelvis"] * crouch))
     for hinge in ("abdomen_y", "chest_y", "head_y"):
         qpos[:, skeleton.qpos_of(hinge)] += CROUCH_PITCH[hinge] * crouch
     for hinge, share in SPINE_TURN.items():

@@ -26,22 +26,37 @@ UPPER_BODY_DEG = {
     "hand_y": 0.0,
 }
 """Hinge angles [deg] of the upper body, left side; x and z rotations mirror on the right."""
+TUCK_PITCH, TUCK_KNEES = np.deg2rad(20.0), np.deg2rad(22.0)
+"""How much further a full tuck tilts the pelvis and bends the knees."""
+TUCK_DEG = {
+    "abdomen_y": 10.0,
+    "chest_y": 6.0,
+    "head_y": -24.0,
+    "upper_arm_y": -22.0,
+    "upper_arm_x": -14.0,
+    "forearm_y": -30.0,
+}
+"""What a full tuck adds to `UPPER_BODY_DEG` [deg]: back round and level, eyes ahead, hands together in front."""
 
 
 @dataclass(frozen=True)
 class Stance:
     """The balanced pose `qpos` (nq,) over skis side by side on flat ground at the origin, its centre of mass's
-    `height` [m] over the snow, and how much higher and lower the legs can bring it, `extension`, `retraction` [m].
+    `height` [m] over the snow, how much higher and lower the legs can bring it, `extension`, `retraction` [m], and the
+    pelvis's forward tilt `pitch` [rad].
     """
 
     qpos: np.ndarray
     height: float
     extension: float
     retraction: float
+    pitch: float
 
 
-def build_stance(skeleton: Skeleton, knee_bend: float) -> Stance:
-    """Return the stance with knees bent by `knee_bend` [rad] and the centre of mass over the middle of the skis."""
+def build_stance(skeleton: Skeleton, knee_bend: float, tuck: float = 0.0) -> Stance:
+    """Return the stance with knees bent by `knee_bend` [rad] and the centre of mass over the middle of the skis; `tuck`
+    0..1 makes it low against the air.
+    """
     from scipy.optimize import brentq
 
     thigh, shank = skeleton.lengths["thigh"], skeleton.lengths["shank"]
@@ -49,23 +64,33 @@ def build_stance(skeleton: Skeleton, knee_bend: float) -> Stance:
     def reach_at(knee: float) -> float:
         return float(np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(knee)))
 
+    knee_bend = knee_bend + tuck * TUCK_KNEES
     reach = reach_at(knee_bend)
 
     def forward(angle: float) -> float:
-        return float(_com(skeleton, _pose(skeleton, reach, angle))[0])
+        return float(_com(skeleton, _pose(skeleton, reach, angle, tuck))[0])
 
     angle = brentq(forward, -0.9, 0.9, xtol=1e-12)
-    qpos = _pose(skeleton, reach, angle)
+    qpos = _pose(skeleton, reach, angle, tuck)
     extension, retraction = reach_at(STRAIGHTEST_KNEE) - reach, reach - reach_at(DEEPEST_KNEE)
     return Stance(
-        qpos, float(_com(skeleton, qpos)[2]), float(extension * np.cos(angle)), float(retraction * np.cos(angle))
+        qpos,
+        float(_com(skeleton, qpos)[2]),
+        float(extension * np.cos(angle)),
+        float(retraction * np.cos(angle)),
+        _pitch(tuck),
     )
 
 
-def upper_body_angles(skeleton: Skeleton) -> dict[int, float]:
+def _pitch(tuck: float) -> float:
+    return float(PELVIS_PITCH + tuck * TUCK_PITCH)
+
+
+def upper_body_angles(skeleton: Skeleton, tuck: float = 0.0) -> dict[int, float]:
     """Return {qpos address: angle [rad]} of the stance's upper body."""
     angles = {}
-    for hinge, degrees in UPPER_BODY_DEG.items():
+    for hinge, upright in UPPER_BODY_DEG.items():
+        degrees = upright + tuck * TUCK_DEG.get(hinge, 0.0)
         if hinge.split("_")[0] in ("abdomen", "chest", "head"):
             angles[skeleton.qpos_of(hinge)] = np.deg2rad(degrees)
             continue
@@ -75,11 +100,11 @@ def upper_body_angles(skeleton: Skeleton) -> dict[int, float]:
     return angles
 
 
-def _pose(skeleton: Skeleton, reach: float, angle: float) -> np.ndarray:
+def _pose(skeleton: Skeleton, reach: float, angle: float, tuck: float) -> np.ndarray:
     """Return qpos with the hips `reach` [m] from the ankles, the leg line tilted forward by `angle` [rad]."""
     qpos = np.zeros((1, skeleton.nq))
     half = 0.5 * skeleton.stance_width
-    pelvis = rotation_about("y", np.array([PELVIS_PITCH]))
+    pelvis = rotation_about("y", np.array([_pitch(tuck)]))
     ski_rotation = np.eye(3)[None]
     ankle = ankle_from_ski(skeleton, np.array([[0.0, half, 0.0]]), ski_rotation)
     sideways = half - skeleton.hip_half_width
@@ -88,7 +113,7 @@ def _pose(skeleton: Skeleton, reach: float, angle: float) -> np.ndarray:
     hip_in_pelvis = skeleton.offset[skeleton.body("thigh.L")]
     qpos[:, :3] = hip - pelvis @ hip_in_pelvis
     qpos[:, 3:7] = quaternion_from_matrix(pelvis)
-    for address, value in upper_body_angles(skeleton).items():
+    for address, value in upper_body_angles(skeleton, tuck).items():
         qpos[:, address] = value
     legs = solve_leg(skeleton, hip, pelvis, ankle, ski_rotation)
     for side, sign in (("L", 1.0), ("R", -1.0)):

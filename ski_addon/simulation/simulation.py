@@ -43,7 +43,7 @@ class Simulation:
         self.spec, self.plan, self.model = spec, plan, model
         self.gates = course_gates(spec, terrain)
         self.time_step = spec.simulation.time_step
-        self.snow = Snow.of(spec.snow, spec.skier)
+        self.snow = Snow.of(spec.snow, spec.skier, spec.technique.tuck)
         self.reference = Reference(plan, model)
         self.dynamics = Dynamics(model, self.snow.drag_factor)
         steered = spec.technique.controller != "open_loop"

@@ -14,6 +14,8 @@ from ..spec import SkierSpec, SnowSpec
 
 AIR_DENSITY = 1.2
 """Density of air at a ski resort on a cold day [kg/m^3]."""
+TUCKED_AWAY = 0.5
+"""Share of the drag area that a full tuck takes away."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +34,10 @@ class Snow:
     drag_factor: float
 
     @classmethod
-    def of(cls, snow: SnowSpec, skier: SkierSpec) -> Snow:
-        """Return the snow of a run document for a skier whose drag it also carries."""
+    def of(cls, snow: SnowSpec, skier: SkierSpec, tuck: float = 0.0) -> Snow:
+        """Return the snow of a run document for a skier whose drag it also carries; `tuck` 0..1 lessens the drag."""
         limit = np.inf if snow.shear_limit == "unlimited" else float(snow.shear_limit)
-        drag = 0.5 * AIR_DENSITY * skier.drag_area / skier.mass
+        drag = 0.5 * AIR_DENSITY * skier.drag_area * (1.0 - TUCKED_AWAY * tuck) / skier.mass
         return cls(snow.hardness, snow.shear_strength, snow.friction, snow.friction_per_speed, limit, drag)
 
     def friction_coefficient(self, speed: np.ndarray | float) -> np.ndarray | float:

@@ -319,6 +319,14 @@ class TechniqueSpec:
     absorption: float = number(
         1.0, 0, 1, "", "Absorption", "How much of the bumps the legs take up, as far as they reach: 0 = none"
     )
+    tuck: float = number(
+        0.0,
+        0,
+        1,
+        "",
+        "Tuck",
+        "How low the skier makes himself against the air: 1 = trunk down, hands ahead, half the drag area",
+    )
     load_min: float = number(
         0.25,
         0,
