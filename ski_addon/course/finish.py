@@ -19,6 +19,8 @@ EASY_TURN = 0.45
 """Sideways acceleration of the turn into the fall line, in units of gravity."""
 TIGHTEST = 1.0 / 6.0
 """Most curvature of that turn [1/m]."""
+FADING_TIME, NOTABLE_BEND = 0.4, 0.01
+"""Time [s] in which a bend that a track ends with fades out; a bend below the second [1/m] takes less of it."""
 TIME_TO_TURN = 1.2
 """Time [s] to throw the skis across before they brake."""
 UNHELD = 1.8
@@ -34,28 +36,37 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
     """
     speed = coasting_speed(track, spec)
     down, left = track.position[:, 0] / math.cos(terrain.mean_angle), track.position[:, 1]
-    heading = math.atan2(left[-1] - left[-2], down[-1] - down[-2])
-    bend = min(EASY_TURN * STANDARD_GRAVITY / max(speed, 1.0) ** 2, TIGHTEST)
-    turn = max(2.0 * abs(heading) / bend, 1.0)
     fast = coasting_speed(track, spec, UNHELD)  # over bumps and on straights nobody holds the speed for sure
     braking = 0.5 * (fast + 1.0) ** 2 / (0.9 * spec.technique.stop_deceleration)
     distance = TIME_TO_TURN * (fast + 1.0) + braking + MARGIN
-    along = np.arange(1, int((turn + distance) / SPACING)) * SPACING
-    share = np.clip(along / turn, 0.0, 1.0)
-    # the curvature rises and falls as one wave of a cosine
-    angle = heading * (1.0 - share + np.sin(2.0 * np.pi * share) / (2.0 * np.pi))
-    step = np.concatenate((np.full(1, along[0]), np.diff(along)))
-    down = np.concatenate((down, down[-1] + np.cumsum(step * np.cos(angle))))
-    left = np.concatenate((left, left[-1] + np.cumsum(step * np.sin(angle))))
-    _check_ground(terrain, down, left, len(along))
-    added = np.full(len(along), TRANSITION, dtype=np.int8)
+    angle = _turn_down(down, left, float(track.curvature[-1]), speed)
+    angle = np.concatenate((angle, np.zeros(int(distance / SPACING))))
+    down = np.concatenate((down, down[-1] + np.cumsum(SPACING * np.cos(angle))))
+    left = np.concatenate((left, left[-1] + np.cumsum(SPACING * np.sin(angle))))
+    _check_ground(terrain, down, left, len(angle))
+    added = np.full(len(angle), TRANSITION, dtype=np.int8)
     phase, number = (
         np.concatenate((track.phase, added)),
-        np.concatenate((track.turn, np.full(len(along), track.turn[-1]))),
+        np.concatenate((track.turn, np.full(len(angle), track.turn[-1]))),
     )
     whole = track_on_surface(terrain, down, left, phase, number, track.start_speed)
-    straight = whole.length - distance
-    return Track(**{**vars(whole), "stop_from": straight})
+    return Track(**{**vars(whole), "stop_from": whole.length - distance})
+
+
+def _turn_down(down: np.ndarray, left: np.ndarray, curvature: float, speed: float) -> np.ndarray:
+    """Return headings (n,) [rad] from the end of a line `down`, `left` (m,) [m] into the fall line, one for each
+    `SPACING`: its `curvature` [1/m] fades out, then that of a turn at `speed` [m/s] rises and falls as one wave.
+    """
+    last = math.hypot(down[-1] - down[-2], left[-1] - left[-2])
+    heading = math.atan2(left[-1] - left[-2], down[-1] - down[-2]) + 0.5 * last * curvature
+    fade = max(FADING_TIME * speed * min(abs(curvature) / NOTABLE_BEND, 1.0), SPACING)
+    to_turn = heading + 0.5 * curvature * fade
+    bend = min(EASY_TURN * STANDARD_GRAVITY / max(speed, 1.0) ** 2, TIGHTEST)
+    turn = max(2.0 * abs(to_turn) / bend, 1.0)
+    along = (np.arange(math.ceil((fade + turn) / SPACING)) + 0.5) * SPACING
+    x, share = np.clip(along / fade, 0.0, 1.0), np.clip((along - fade) / turn, 0.0, 1.0)
+    faded = heading + curvature * fade * (0.5 * x + np.sin(np.pi * x) / (2.0 * np.pi))
+    return faded - to_turn * (share - np.sin(2.0 * np.pi * share) / (2.0 * np.pi))
 
 
 def coasting_speed(track: Track, spec: RunSpec, held: float = 1.1) -> float:
