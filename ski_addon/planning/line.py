@@ -35,7 +35,7 @@ class Line:
 
     `body_frame` (n, 3, 3) has columns along and across the skis and up from the ground's smooth course; `spin` (n, 3)
     [rad/s] is its angular velocity and `pull` (n, 3) [m/s^2] gravity and drag less the acceleration of the skis, both
-    in its own axes; `cosine` (n,) is that of the angle between snow and smooth ground.
+    in its own axes.
     """
 
     time: np.ndarray
@@ -59,7 +59,6 @@ class Line:
     body_frame: np.ndarray
     spin: np.ndarray
     pull: np.ndarray
-    cosine: np.ndarray
 
     @property
     def left(self) -> np.ndarray:
@@ -115,7 +114,6 @@ class TrackSpline:
             body_frame=frame,
             spin=frame_spin(frame, ride.time),
             pull=np.einsum("nij,ni->nj", frame, GRAVITY - drag[:, None] * tangent - moved),
-            cosine=np.sum(frame[..., 2] * normal, axis=1),
         )
 
 

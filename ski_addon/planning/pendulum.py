@@ -165,10 +165,16 @@ def _cut(pivot: _Pivot, line: Line, y: np.ndarray, h: np.ndarray) -> Pendulum:
         array[inner] for array in (y, y_rate, h, h_rate, _normal(pivot, y, h), swing, lift)
     )
     skis = np.cross(line.body_frame[..., 1], line.surface_normal)  # along the skis on the bumpy snow
-    swing = swing * np.sum(line.body_frame[..., 0] * skis, axis=1) + lift * np.sum(
-        line.body_frame[..., 2] * skis, axis=1
-    )
-    return Pendulum(y, y_rate, h, h_rate, normal / line.cosine, swing)
+    ahead, _, lifted = (np.sum(line.body_frame[..., axis] * skis, axis=1) for axis in range(3))
+    return Pendulum(y, y_rate, h, h_rate, normal * _bearing(line, y / h, lifted / ahead), swing * ahead + lift * lifted)
+
+
+def _bearing(line: Line, lean: np.ndarray, pitch: np.ndarray) -> np.ndarray:
+    """Return the snow's normal force (n,) for each unit of force up from the smooth ground, on a body that leans by the
+    tangent `lean` to the left; `pitch` is that of the skis. Snow bears nothing along the skis.
+    """
+    forward, left, up = (np.sum(line.body_frame[..., axis] * line.surface_normal, axis=1) for axis in range(3))
+    return up + lean * left - pitch * forward
 
 
 _PAD = 320

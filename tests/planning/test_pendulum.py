@@ -29,7 +29,7 @@ def line(curvature, speed, left=0.0, into=G, **more) -> Line:
     )
     level = np.broadcast_to(np.eye(3), (len(TIME), 3, 3))
     return Line(
-        **flat | {"cosine": ONES},
+        **flat,
         position=np.zeros((len(TIME), 3)),
         tangent=level[..., 0],
         surface_normal=level[..., 2],

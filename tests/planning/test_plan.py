@@ -68,6 +68,37 @@ def test_load_is_what_the_motion_needs(name, changes):
     assert plan.load.min() >= run.spec.technique.load_min * plan.surface_normal[0, 2] - 1e-9
 
 
+ROUGH = {  # preset, changes, and how near [body weights, m]
+    "bumps": ("bumps", {"slope.bump_count": 3}, 0.01),
+    "moguls": ("moguls", {"slope.mogul_count": 6}, 0.04),
+    "rolling gates": ("rolling_slalom", {"course.gate_count": 5}, 0.01),
+    "skidding to a stop": ("steep", {"course.turn_count": 2}, 0.025),
+}
+
+
+@pytest.mark.parametrize("case", ROUGH)
+def test_load_is_what_the_motion_needs_on_any_ground(case):
+    """To the friction along skis that point up or down over the smooth ground, which the balance leaves out."""
+    name, changes, near = ROUGH[case]
+    plan = planned(name, changes).plan
+    needed = dot(com_acceleration(plan) - GRAVITY, plan.surface_normal) / 9.81
+    np.testing.assert_allclose(needed[INNER], plan.load[INNER], atol=near)
+    assert np.ptp(plan.load) > 0.1
+
+
+@pytest.mark.parametrize("case", ROUGH)
+def test_force_of_the_snow_passes_between_the_skis_on_any_ground(case):
+    """Measured across the skis in the snow, which moguls roll under the body, and without the air's part."""
+    name, changes, near = ROUGH[case]
+    run = planned(name, changes)
+    plan, drag = run.plan, Snow.of(run.spec.snow, run.spec.skier).drag_factor
+    force = com_acceleration(plan) - GRAVITY + drag * plan.speed[:, None] ** 2 * plan.tangent
+    over, across, up = plan.com - plan.position, plan.ski_frame[..., 1], plan.ski_frame[..., 2]
+    point = dot(over, across) - dot(over, up) * dot(force, across) / dot(force, up)
+    assert np.abs(point[INNER]).max() < near
+    assert np.sqrt(np.mean(point[INNER] ** 2)) < 0.35 * near
+
+
 def test_legs_keep_the_load_that_is_asked_in_a_fast_transition():
     """[claim p] Nothing but the legs differs: the rigid stance would lose a quarter of the load."""
     free, kept = (planned("paper_r10", {**FAST, "technique.load_min": least}).plan for least in (0, 0.85))
