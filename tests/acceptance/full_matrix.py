@@ -64,7 +64,7 @@ class Case:
 
 
 def cases() -> list[Case]:
-    """All cases: the paper's four with friction and without, and the other carved turns as shipped, to twice the bounds.
+    """All cases: the paper's four with friction and without, and other carved turns as shipped, to twice the bounds.
 
     Gates, paths, bumps and stops are in `tests/test_presets.py` and beside this file, with bounds of their own.
     """
