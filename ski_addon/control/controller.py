@@ -22,13 +22,15 @@ from .tasks import Desired, TaskSet, progress_rate
 class Command:
     """What the controller decided at one step.
 
-    `torque` (31,) [N m]; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
+    `torque` (31,) [N m] of each hinge, of which `end_stop` (31,) is more than its muscles can give: the end of its
+    range gives that, and only to a hinge on its way past it; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
     `load_moment` (2, 3) normal forces times their places from the ski's middle [N m, world];
     `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle`
     (2,) [rad] of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
     """
 
     torque: np.ndarray
+    end_stop: np.ndarray
     snow: np.ndarray
     edge_normal: np.ndarray
     edge_side: np.ndarray
@@ -92,13 +94,14 @@ class Controller:
         problem = formulation.build(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         solution = self.solver.solve(problem)
         x = solution.unknowns
-        limits = dynamics.model.torque_lower, dynamics.model.torque_upper
-        torque = np.clip(formulation.torques(dynamics, x), *limits)
+        torque = np.clip(formulation.torques(dynamics, x), formulation.torque_lower, formulation.torque_upper)
+        end_stop = torque - np.clip(torque, dynamics.model.torque_lower, dynamics.model.torque_upper)
         snow = formulation.snow_force(x)
         self.balance.observer.commanded(torque, snow)
         edge_normal, edge_side = formulation.edge_forces(x)
         return Command(
             torque=torque,
+            end_stop=end_stop,
             snow=snow,
             edge_normal=edge_normal,
             edge_side=edge_side,

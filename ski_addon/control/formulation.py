@@ -6,7 +6,8 @@ its side force in units of `FORCE_UNIT`. Torques are eliminated by the equations
     minimise   sum of weighted task errors + small force cost
     subject to root rows     M_r q'' - J_r' f = -h_r                 (6 equalities: no torque moves the root)
                torque rows   tau_min <= M_j q'' + h_j - J_j' f <= tau_max
-               hinge rows    q'' bounds that keep every hinge in its range
+               hinge rows    q'' bounds that keep every hinge in its range; one on its way past its end leans on the end
+                             stop there, and its torque row gives room for that
                snow rows     0 <= normal force <= cap, side force within its caps
 
 Penetration depths of the paper's program occur in no objective, so the forces themselves are the unknowns.
@@ -25,10 +26,12 @@ from ..snow import Snow, contact_points, edge_bearing
 from .dynamics import Dynamics
 from .gains import (
     ACCELERATION_LIMIT,
+    END_STOP_STRENGTH,
     EDGE_SHEAR_RATIO,
     FORCE_LIMIT_WEIGHTS,
     FORCE_UNIT,
     JOINT_LIMIT_TIME,
+    RANGE_MARGIN,
     LIFTING_EDGE_WEIGHTS,
     Gains,
 )
@@ -42,7 +45,8 @@ ROOT_SCALE = 0.01
 class Problem:
     """min 1/2 x'Px + q'x with lower <= Ax <= upper, in the sparsity of `Formulation`.
 
-    `hessian` and `constraints` are the non-zeros of P's upper triangle and of A, column by column.
+    `hessian` and `constraints` are the non-zeros of P's upper triangle and of A, column by column. `end_stops` (2, 31)
+    is what end stops add to the torque rows of `lower` and `upper`; 0 but for hinges on their way past their ends.
     """
 
     hessian: np.ndarray
@@ -50,13 +54,18 @@ class Problem:
     constraints: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    end_stops: np.ndarray
 
 
 class Formulation:
     """Builds the program of one step; owns the arrays that `Problem` shows."""
 
     def __init__(self, model: SkierModel, snow: Snow, gains: Gains, segments: int) -> None:
-        """Lay out unknowns and rows for `segments` contact points on each of the four edges."""
+        """Lay out unknowns and rows for `segments` contact points on each of the four edges.
+
+        `torque_lower`, `torque_upper` (31,) [N m] are the hinges' torque limits at the state of the last `build`: those
+        of the muscles, and of the end stop where a hinge is on its way past the end of its range.
+        """
         self.model, self.snow, self.gains, self.segments = model, snow, gains, segments
         skeleton = model.skeleton
         self.points = contact_points(skeleton.ski_length, skeleton.ski_width, segments)
@@ -140,8 +149,11 @@ class Formulation:
     def _layout_bounds(self) -> None:
         n, hinges, model = self.accelerations, self.hinges, self.model
         self._lower, self._upper = np.zeros(self.rows), np.zeros(self.rows)
-        self._torque_lower, self._torque_upper = model.torque_lower, model.torque_upper
-        self.hinge_rows = slice(n, n + hinges)
+        self.torque_lower, self.torque_upper = model.torque_lower.copy(), model.torque_upper.copy()
+        self._joint_lower, self._joint_upper = model.joint_lower + RANGE_MARGIN, model.joint_upper - RANGE_MARGIN
+        self._end_stops = np.zeros((2, hinges))
+        self._end_stop = END_STOP_STRENGTH * np.maximum(-model.torque_lower, model.torque_upper)
+        self.torque_rows, self.hinge_rows = slice(6, n), slice(n, n + hinges)
         self._snow_rows = slice(n + hinges, self.rows)
         weight = model.mass * STANDARD_GRAVITY / FORCE_UNIT
         self._normal_cap = FORCE_LIMIT_WEIGHTS * weight
@@ -166,10 +178,10 @@ class Formulation:
         """
         self._build_snow(dynamics, normal)
         self._build_cost(dynamics, desired, leg_freedom)
-        self._build_constraints(dynamics)
         self._build_hinge_bounds(dynamics)
+        self._build_constraints(dynamics)
         self._build_snow_bounds(edge_angle)
-        return Problem(self._hessian, self._gradient, self._constraints, self._lower, self._upper)
+        return Problem(self._hessian, self._gradient, self._constraints, self._lower, self._upper, self._end_stops)
 
     def _build_snow(self, dynamics: Dynamics, normal: np.ndarray) -> None:
         """Fill `snow_map` (2, 6, per ski): wrench at the ski's middle by unit unknowns, and `force_columns`."""
@@ -225,16 +237,22 @@ class Formulation:
         np.take(dense, self._constraint_index, out=self._constraints)
         lower, upper, scale = self._lower, self._upper, self._torque_scale
         lower[:6] = upper[:6] = -ROOT_SCALE * bias[:6]
-        lower[6:n] = (self._torque_lower - bias[6:]) * scale
-        upper[6:n] = (self._torque_upper - bias[6:]) * scale
+        lower[6:n] = (self.torque_lower - bias[6:]) * scale
+        upper[6:n] = (self.torque_upper - bias[6:]) * scale
 
     def _build_hinge_bounds(self, dynamics: Dynamics) -> None:
         model, horizon = self.model, JOINT_LIMIT_TIME
         reached = dynamics.qpos[model.actuated_qpos] + horizon * dynamics.velocity[6:]
-        factor = 2.0 / horizon**2
+        factor = 4.0 / horizon**2  # critically damped: a hinge comes to rest at its end and does not swing past it
         lower, upper = self._lower[self.hinge_rows], self._upper[self.hinge_rows]
-        np.clip((model.joint_lower - reached) * factor, -ACCELERATION_LIMIT, ACCELERATION_LIMIT, out=lower)
-        np.clip((model.joint_upper - reached) * factor, -ACCELERATION_LIMIT, ACCELERATION_LIMIT, out=upper)
+        np.clip((self._joint_lower - reached) * factor, -ACCELERATION_LIMIT, ACCELERATION_LIMIT, out=lower)
+        np.clip((self._joint_upper - reached) * factor, -ACCELERATION_LIMIT, ACCELERATION_LIMIT, out=upper)
+        stops = self._end_stops
+        np.multiply(self._end_stop, reached > self._joint_upper, out=stops[0])
+        np.multiply(self._end_stop, reached < self._joint_lower, out=stops[1])
+        np.subtract(model.torque_lower, stops[0], out=self.torque_lower)
+        np.add(model.torque_upper, stops[1], out=self.torque_upper)
+        stops *= self._torque_scale
 
     def _build_snow_bounds(self, edge_angle: np.ndarray) -> None:
         segments = self.segments

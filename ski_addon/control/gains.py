@@ -6,6 +6,7 @@ errors [SG19 Eq. 29]. The motion is forgiving: each of these may change by a fac
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -40,8 +41,12 @@ FORCE_UNIT = 100.0
 """Snow forces are unknowns in this unit [N], so that they are of the order of the accelerations."""
 JOINT_LIMIT_TIME = 0.03
 """A hinge must be able to stop at its limit within this time [s]."""
+RANGE_MARGIN = math.radians(0.1)
+"""A hinge is brought to rest this far from the end of its range [rad]."""
 ACCELERATION_LIMIT = 800.0
 """Bound on hinge accelerations [rad/s^2]: keeps the limits compatible with the torque limits."""
+END_STOP_STRENGTH = 10.0
+"""Most torque of a joint's end stop (bone, ligament, the boot's shell), in units of its muscles' greatest torque."""
 FORCE_LIMIT_WEIGHTS = 6.0
 """Most normal force at one contact point, in units of the skier's weight."""
 EDGE_SHEAR_RATIO = 6.0

@@ -19,7 +19,11 @@ NOT_A_NUMBER = -99
 """Our status for a program that holds something else than finite numbers."""
 SOLVED = 1
 """OSQP's status value for a solution within tolerance."""
+POLISHED = 1
+"""OSQP's status value for an answer made exact by solving the equations of the limits that bind."""
 TOLERANCE = 1e-5
+FINER_TOLERANCES = (1e-5, 1e-6, 1e-7)
+"""Tolerances from which an answer at limits is tried to be made exact, one after the other."""
 STEP_SIZE = 0.1
 """OSQP's rho: right while no torque or hinge limit binds; steps on which one does adapt it and then return to it."""
 MOST_ITERATIONS = 4000
@@ -77,7 +81,7 @@ class OsqpSolver:
         # the public update() and solve() copy everything into caches for derivatives: 70 microseconds a step
         self._solver = self._osqp._solver
         self._zero = (np.zeros(formulation.unknowns), np.zeros(rows))
-        self._hinge_rows = formulation.hinge_rows
+        self._hinge_rows, self._torque_rows = formulation.hinge_rows, formulation.torque_rows
 
     def solve(self, problem: Problem) -> Solution:
         """Solve `problem`, warm from the last solution.
@@ -91,15 +95,17 @@ class OsqpSolver:
         solution = self._attempt(problem.gradient, problem.lower, problem.upper, 1)
         if solution.status == 0:
             return solution
-        self._limit_iterations(HARD_ITERATIONS)
+        self._change(max_iter=HARD_ITERATIONS)
         solver.warm_start(*self._zero)
         solution = self._attempt(problem.gradient, problem.lower, problem.upper, 2)
         if solution.status != 0:
             lower, upper = problem.lower.copy(), problem.upper.copy()
             lower[self._hinge_rows], upper[self._hinge_rows] = -UNBOUNDED, UNBOUNDED
+            lower[self._torque_rows] += problem.end_stops[0]  # with no ranges there are no ends to lean on
+            upper[self._torque_rows] -= problem.end_stops[1]
             solver.warm_start(*self._zero)
             solution = self._attempt(problem.gradient, lower, upper, 3)
-        self._limit_iterations(MOST_ITERATIONS)
+        self._change(max_iter=MOST_ITERATIONS)
         return solution
 
     def _attempt(self, gradient: np.ndarray, lower: np.ndarray, upper: np.ndarray, attempt: int) -> Solution:
@@ -107,17 +113,32 @@ class OsqpSolver:
         solver.update_data_vec(q=gradient, l=lower, u=upper)
         solver.solve()
         info = solver.info
-        status = 0 if info.status_val == SOLVED else int(info.status_val)
+        status, iterations = int(info.status_val), int(info.iter)
         if info.rho_updates:
+            iterations += self._refine() if status == SOLVED else 0
             solver.update_rho(STEP_SIZE)
+        status = 0 if status == SOLVED else status
         unknowns = np.array(solver.solution.x)
         if not math.isfinite(float(unknowns.sum()) + float(gradient.sum())) or status in INFEASIBLE:
             # OSQP gives no point when it finds infeasibility, and calls a program without numbers solved
             unknowns = self._zero[0].copy()
             status = status or NOT_A_NUMBER
-        return Solution(unknowns, int(info.iter), status, attempt)
+        return Solution(unknowns, iterations, status, attempt)
 
-    def _limit_iterations(self, most: int) -> None:
-        settings = self._solver.get_settings()
-        settings.max_iter = most
-        self._solver.update_settings(settings)
+    def _refine(self) -> int:
+        """Go on from a rough answer at limits that bind, until their equations can be solved; return the iterations."""
+        iterations = 0
+        for tolerance in FINER_TOLERANCES:
+            self._change(polishing=1, eps_abs=tolerance, eps_rel=tolerance)
+            self._solver.solve()
+            iterations += int(self._solver.info.iter)
+            if self._solver.info.status_polish == POLISHED:
+                break
+        self._change(polishing=0, eps_abs=TOLERANCE, eps_rel=TOLERANCE)
+        return iterations
+
+    def _change(self, **settings: float) -> None:
+        changed = self._solver.get_settings()
+        for name, value in settings.items():
+            setattr(changed, name, value)
+        self._solver.update_settings(changed)

@@ -62,6 +62,7 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "zmp_margin": (),
     "disturbance": (3,),
     "steering": (),
+    "end_stop": (31,),
 }
 """Real numbers recorded each step, and their shapes."""
 COUNTS = {
@@ -97,6 +98,7 @@ class Recording:
     `zmp` (n, 2) where the load acts, along and to the left of the skis from their middle [m], and `zmp_margin` (n,) [m]
     from there to the border of the bearing edges. Errors and offsets are from the plan, not from the steered line.
     `steering` (n,) [rad] is the planned angle from the track to the skis, positive to the left: skids brake.
+    `end_stop` (n, 31) [N m] is the part of `tau` that the ends of the hinges' ranges give, past the muscles' limits.
     """
 
     header: dict[str, Any]
@@ -138,6 +140,7 @@ class Recording:
     zmp_margin: np.ndarray
     disturbance: np.ndarray
     steering: np.ndarray
+    end_stop: np.ndarray
 
     def __post_init__(self) -> None:
         for name in array_names():

@@ -101,7 +101,8 @@ class Simulation:
         dynamics.update()
         command = self.controller.step(self.progress)
         self.arc_length = float(command.sample[0, self.reference.columns["arc_length"]][0])
-        ratio = np.maximum(command.torque / self.model.torque_upper, command.torque / self.model.torque_lower)
+        muscles = command.torque - command.end_stop
+        ratio = np.maximum(muscles / self.model.torque_upper, muscles / self.model.torque_lower)
         self._watch.note_torques(now, ratio)
         value, columns = command.sample[0], self.reference.columns
         desired = self.controller.desired
@@ -191,6 +192,7 @@ class Simulation:
                 border,
                 balance.push,
                 float(value[columns["steering"]][0]),
+                command.end_stop,
             ),
             (self._labels[0][place], self._labels[1][place], solution.iterations, solution.status, solution.attempts),
         )

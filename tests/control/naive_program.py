@@ -224,13 +224,27 @@ def snow_bounds(naive: NaiveModel, snow: Snowpack, edge_angle: np.ndarray) -> tu
 
 
 def hinge_bounds(naive: NaiveModel) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations (31,) that keep every hinge within its range over the next 30 ms, at most 800 rad/s^2."""
+    """Accelerations (31,) that keep every hinge within its range by 0.1 deg over the next 30 ms, at most 800 rad/s^2."""
     lower, upper = [], []
     model = naive.model
     for hinge in range(31):
         angle, rate = naive.data.qpos[model.actuated_qpos[hinge]], naive.data.qvel[model.actuated_dof[hinge]]
-        for limit, out in ((model.joint_lower[hinge], lower), (model.joint_upper[hinge], upper)):
-            out.append(np.clip(2.0 * (limit - angle - 0.03 * rate) / 0.03**2, -800.0, 800.0))
+        margin = np.deg2rad(0.1)
+        for limit, out in ((model.joint_lower[hinge] + margin, lower), (model.joint_upper[hinge] - margin, upper)):
+            out.append(np.clip(4.0 * (limit - angle - 0.03 * rate) / 0.03**2, -800.0, 800.0))
+    return np.array(lower), np.array(upper)
+
+
+def torque_bounds(naive: NaiveModel) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest torque (31,): the muscles', and ten times as much where a hinge runs into its end stop."""
+    lower, upper = [], []
+    model, margin = naive.model, np.deg2rad(0.1)
+    for hinge in range(31):
+        weakest, strongest = model.torque_lower[hinge], model.torque_upper[hinge]
+        stop = 10.0 * max(-weakest, strongest)
+        reached = naive.data.qpos[model.actuated_qpos[hinge]] + 0.03 * naive.data.qvel[model.actuated_dof[hinge]]
+        lower.append(weakest - stop if reached > model.joint_upper[hinge] - margin else weakest)
+        upper.append(strongest + stop if reached < model.joint_lower[hinge] + margin else strongest)
     return np.array(lower), np.array(upper)
 
 
@@ -260,8 +274,8 @@ def naive_program(
     dynamics_rows = scale[:, None] * np.hstack((motion, -push))
     hinge_rows = np.hstack((np.zeros((31, 6)), np.eye(31), np.zeros((31, points))))
     snow_rows = np.hstack((np.zeros((points, 37)), np.eye(points)))
-    torque_lower = np.concatenate((np.zeros(6), model.torque_lower))
-    torque_upper = np.concatenate((np.zeros(6), model.torque_upper))
+    torques = torque_bounds(naive)
+    torque_lower, torque_upper = (np.concatenate((np.zeros(6), bound)) for bound in torques)
     hinges, forces = hinge_bounds(naive), snow_bounds(naive, snow, edge_angle)
     return NaiveProgram(
         P=P,

@@ -22,18 +22,18 @@ def pushed(body: str, direction: str, force: float, balance: str = "steering"):
 
 @pytest.mark.slow  # a fall takes the solver many iterations
 def test_a_push_that_fells_the_skier_who_only_tracks_is_survived_by_steering():
-    tracked, steered = (pushed("abdomen", "left", 120.0, balance) for balance in ("tracking", "steering"))
+    tracked, steered = (pushed("abdomen", "left", 140.0, balance) for balance in ("tracking", "steering"))
     assert tracked.status == "fell" and steered.status == "finished"
     assert np.all(tracked.steering_offset == 0.0)
     offset = steered.track_offset[:, 0]
     assert 0.3 < offset.max() < 3.0, "to the left, from where the push went"
     assert abs(offset[-1]) < 0.5 * offset.max()
-    assert steered.torque_ratio.max() <= 1.0 + 1e-12 and np.rad2deg(steered.joint_margin.min()) > -1.5
+    assert steered.torque_ratio.max() <= 1.0 + 1e-12 and steered.joint_margin.min() >= 0.0
 
 
 @pytest.mark.slow
 def test_the_capture_margin_is_lost_by_who_falls():
-    tracked = pushed("abdomen", "left", 120.0, "tracking")
+    tracked = pushed("abdomen", "left", 140.0, "tracking")
     lost = tracked.time[np.argmax(tracked.capture_margin < 0.0)]
     assert tracked.status == "fell" and START < lost < tracked.time[-1]
 

@@ -141,7 +141,7 @@ class Balance:
         least, most = acceleration_bounds(abs(speed), centripetal)
         least -= sliding * (least + SLIDING_ACCELERATION)
         most -= sliding * (most - SLIDING_ACCELERATION)
-        return Reach(-right_reach, left_reach, least, most)
+        return Reach(-right_reach, left_reach, least, most, abs(speed))
 
 
 def _faded(value: float, low: float, high: float) -> float:

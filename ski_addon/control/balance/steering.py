@@ -23,18 +23,21 @@ MOST_JERK = 150.0
 """Most change of the sideways acceleration [m/s^3]: at 5 m/s from straight to the tightest turn in 40 ms."""
 REJOIN_FROM = 0.434
 """Offset [m] beyond which the wish to be back on the line grows no more: it must never outvote balance."""
+REJOIN_SPEED, REJOIN_MOST = 5.0, 1.4
+"""Up to this speed [m/s]; faster skis come back at the same angle, up to this many times as far off."""
 
 
 @dataclass(frozen=True)
 class Reach:
     """What can be done at one moment: the load's middle `right`..`left` of the skis' [m] (right is negative), the
-    skis' sideways acceleration `slowest`..`fastest` [m/s^2].
+    skis' sideways acceleration `slowest`..`fastest` [m/s^2]; `speed` of the skis [m/s].
     """
 
     right: float
     left: float
     slowest: float
     fastest: float
+    speed: float
 
 
 def acceleration_bounds(speed: float, centripetal: float) -> tuple[float, float]:
@@ -63,7 +66,8 @@ class Steering:
 
     def update(self, divergent: float, omega: float, reach: Reach) -> None:
         """Decide `shift` and `jerk` for the divergent component `divergent` [m], measured from the planned line."""
-        rejoin = min(max(self.offset, -REJOIN_FROM), REJOIN_FROM)
+        most = REJOIN_FROM * min(max(reach.speed / REJOIN_SPEED, 1.0), REJOIN_MOST)
+        rejoin = min(max(self.offset, -most), most)
         state = (divergent - self.offset, rejoin, self.rate, self.acceleration)
         shift, jerk = self._regulator.respond(omega, state)
         self.shift = min(max(shift, reach.right), reach.left)

@@ -10,7 +10,7 @@ from ski_addon.control.balance import steering as module
 
 STEP = 0.002
 OMEGA = 3.7
-REACH = Reach(-0.12, 0.12, -6.0, 6.0)
+REACH = Reach(-0.12, 0.12, -6.0, 6.0, 5.0)
 REGULATOR = Regulator()
 
 
@@ -47,7 +47,7 @@ def test_mirrored_push_is_answered_by_mirrored_steering():
     np.testing.assert_array_equal(skied(0.1, 3.0), -skied(-0.1, -3.0))
 
 
-@pytest.mark.parametrize("reach", [REACH, Reach(-0.05, 0.12, -3.0, 7.0), Reach(-0.12, 0.05, -8.0, 1.0)])
+@pytest.mark.parametrize("reach", [REACH, Reach(-0.05, 0.12, -3.0, 7.0, 5.0), Reach(-0.12, 0.05, -8.0, 1.0, 5.0)])
 def test_bounds_hold_at_every_step(reach):
     for push in (-4.0, 4.0):
         rows = skied(0.0, push, reach, seconds=3.0)
@@ -63,7 +63,7 @@ def test_bounds_that_close_in_are_met_without_a_jump():
         steering.advance()
     assert steering.acceleration == pytest.approx(REACH.fastest)
     before = steering.acceleration
-    steering.update(1.0, OMEGA, Reach(-0.12, 0.12, -6.0, 1.0))
+    steering.update(1.0, OMEGA, Reach(-0.12, 0.12, -6.0, 1.0, 5.0))
     steering.advance()
     assert before - 2.0 * module.MOST_JERK * STEP <= steering.acceleration < before
 
@@ -98,7 +98,7 @@ def caught(start: float, reach: Reach) -> bool:
     return False
 
 
-@pytest.mark.parametrize("reach", [REACH, Reach(-0.05, 0.12, -2.0, 9.0)])
+@pytest.mark.parametrize("reach", [REACH, Reach(-0.05, 0.12, -2.0, 9.0, 5.0)])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_capture_margin_is_zero_where_the_most_that_can_be_done_only_just_catches(reach, side):
     """Found by bisection on simulated pendulums."""
@@ -115,3 +115,14 @@ def test_the_capture_margin_falls_by_what_the_skier_leans_further():
     here, there = (steering.capture_margin(x, OMEGA, REACH) for x in (0.1, 0.15))
     assert here - there == pytest.approx(0.05)
     assert steering.capture_margin(-0.1, OMEGA, REACH) == pytest.approx(here)
+
+
+def test_faster_skis_come_back_faster_but_not_without_end():
+    """After a great push: the sideways speed of coming back grows with the speed, up to a bound."""
+    rates = []
+    for speed in (3.0, 5.0, 6.0, 9.0):
+        rows = skied(0.0, 4.0, Reach(-0.12, 0.12, -6.0, 6.0, speed))
+        assert np.abs(rows[-1, :3]).max() < 0.02
+        rates.append(-rows[:, 2].min())
+    assert rates[0] == rates[1] < 0.98 * rates[2] < 0.98 * rates[3]
+    assert rates[3] < 1.6 * rates[1]
