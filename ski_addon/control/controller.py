@@ -23,10 +23,10 @@ class Command:
     """What the controller decided at one step.
 
     `torque` (31,) [N m] of each hinge, of which `end_stop` (31,) is more than its muscles can give: the end of its
-    range gives that, and only to a hinge on its way past it; `snow` (37,) generalised snow force; `edge_normal`, `edge_side` (2, 2) [N] by ski and edge;
-    `load_moment` (2, 3) normal forces times their places from the ski's middle [N m, world];
-    `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the reference; `edge_angle`
-    (2,) [rad] of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
+    range gives that, and only to a hinge on its way past it; `snow` (37,) generalised snow force; `edge_normal`,
+    `edge_side` (2, 2) [N] by ski and edge; `load_moment` (2, 3) normal forces times their places from the ski's
+    middle [N m, world]; `ski_force` (2, 3) [N, world]; `rate` of progress, 1 as planned; `sample` (3, width) the
+    reference; `edge_angle` (2,) [rad] of the skis as they are; `root_residual` [N, N m]; and the solver's `solution`.
     """
 
     torque: np.ndarray

@@ -26,13 +26,13 @@ from ..snow import Snow, contact_points, edge_bearing
 from .dynamics import Dynamics
 from .gains import (
     ACCELERATION_LIMIT,
-    END_STOP_STRENGTH,
     EDGE_SHEAR_RATIO,
+    END_STOP_STRENGTH,
     FORCE_LIMIT_WEIGHTS,
     FORCE_UNIT,
     JOINT_LIMIT_TIME,
-    RANGE_MARGIN,
     LIFTING_EDGE_WEIGHTS,
+    RANGE_MARGIN,
     Gains,
 )
 from .tasks import Desired

@@ -41,7 +41,7 @@ FORCE_UNIT = 100.0
 """Snow forces are unknowns in this unit [N], so that they are of the order of the accelerations."""
 JOINT_LIMIT_TIME = 0.03
 """A hinge must be able to stop at its limit within this time [s]."""
-RANGE_MARGIN = math.radians(0.1)
+RANGE_MARGIN = math.radians(0.5)
 """A hinge is brought to rest this far from the end of its range [rad]."""
 ACCELERATION_LIMIT = 800.0
 """Bound on hinge accelerations [rad/s^2]: keeps the limits compatible with the torque limits."""

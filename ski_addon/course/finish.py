@@ -15,10 +15,13 @@ from .pace import speed_to_hold
 from .surface import SPACING, track_on_surface
 from .track import TRANSITION, Track
 
-EASY_TURN = 0.45
-"""Sideways acceleration of the turn into the fall line, in units of gravity."""
+FIRM_TURN, LEANING = 0.85, 0.75
+"""Sideways acceleration of the turn into the fall line, in units of gravity: firm, so that skids can brake
+there, and at most this share of what `technique.inclination_max_deg` allows."""
 TIGHTEST = 1.0 / 6.0
 """Most curvature of that turn [1/m]."""
+QUICKEST = 0.04
+"""Most change of that turn's curvature [1/m^2]."""
 FADING_TIME, NOTABLE_BEND = 0.4, 0.01
 """Time [s] in which a bend that a track ends with fades out; a bend below the second [1/m] takes less of it."""
 TIME_TO_TURN = 1.2
@@ -39,7 +42,8 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
     fast = coasting_speed(track, spec, UNHELD)  # over bumps and on straights nobody holds the speed for sure
     braking = 0.5 * (fast + 1.0) ** 2 / (0.9 * spec.technique.stop_deceleration)
     distance = TIME_TO_TURN * (fast + 1.0) + braking + MARGIN
-    angle = _turn_down(down, left, float(track.curvature[-1]), speed)
+    firm = min(FIRM_TURN, LEANING * math.tan(math.radians(spec.technique.inclination_max_deg)))
+    angle = _turn_down(down, left, float(track.curvature[-1]), speed, firm)
     angle = np.concatenate((angle, np.zeros(int(distance / SPACING))))
     down = np.concatenate((down, down[-1] + np.cumsum(SPACING * np.cos(angle))))
     left = np.concatenate((left, left[-1] + np.cumsum(SPACING * np.sin(angle))))
@@ -53,15 +57,17 @@ def with_run_out(track: Track, spec: RunSpec, terrain: Terrain) -> Track:
     return Track(**{**vars(whole), "stop_from": whole.length - distance})
 
 
-def _turn_down(down: np.ndarray, left: np.ndarray, curvature: float, speed: float) -> np.ndarray:
+def _turn_down(down: np.ndarray, left: np.ndarray, curvature: float, speed: float, firm: float) -> np.ndarray:
     """Return headings (n,) [rad] from the end of a line `down`, `left` (m,) [m] into the fall line, one for each
-    `SPACING`: its `curvature` [1/m] fades out, then that of a turn at `speed` [m/s] rises and falls as one wave.
+    `SPACING`: its `curvature` [1/m] fades out, then that of a turn at `speed` [m/s] rises to `firm` gravities and falls
+    again as one wave.
     """
     last = math.hypot(down[-1] - down[-2], left[-1] - left[-2])
     heading = math.atan2(left[-1] - left[-2], down[-1] - down[-2]) + 0.5 * last * curvature
     fade = max(FADING_TIME * speed * min(abs(curvature) / NOTABLE_BEND, 1.0), SPACING)
     to_turn = heading + 0.5 * curvature * fade
-    bend = min(EASY_TURN * STANDARD_GRAVITY / max(speed, 1.0) ** 2, TIGHTEST)
+    bend = min(firm * STANDARD_GRAVITY / max(speed, 1.0) ** 2, TIGHTEST)
+    bend = min(bend, math.sqrt(2.0 * QUICKEST * abs(to_turn) / math.pi) + 1e-9)  # the steepest place of the wave
     turn = max(2.0 * abs(to_turn) / bend, 1.0)
     along = (np.arange(math.ceil((fade + turn) / SPACING)) + 0.5) * SPACING
     x, share = np.clip(along / fade, 0.0, 1.0), np.clip((along - fade) / turn, 0.0, 1.0)

@@ -43,6 +43,12 @@ FASTEST_STEERING, FASTEST_STOP = np.deg2rad(250.0), np.deg2rad(130.0)
 """Most change of the wanted steering angle [rad/s] in turns, and where the skis are thrown across to stop."""
 ACROSS = 0.5 * np.pi
 """Steering angle of a stop."""
+BEFORE_BRAKING = 0.9
+"""Time [s] from where the skis begin to turn across the track until they brake."""
+ARRIVAL = 1.05
+"""Most speed to begin a stop's braking with, in units of the speed to keep below."""
+SKID_FADES = 2.0
+"""Way [m] from where the skis begin to turn across on which what pressed on their sides before ceases to brake."""
 BRAKE_FROM, BRAKE_TO = np.deg2rad(74.0), np.deg2rad(89.0)
 """Steering angles between which a stop begins to brake."""
 SOFT_SPEED = 1.0
@@ -118,6 +124,32 @@ class _Rider:
         self.table = np.stack(table, axis=1).tolist()
         self.last = count - 1
         self.snow, self.control, self.track = snow, control, track
+        self.most = self._speeds_to_stop_from()
+
+    def _speeds_to_stop_from(self) -> list[float]:
+        """Return the speed to keep below at each place of the table [m/s].
+
+        Nothing brakes on the straight way to a stop, so a skier who is to stop slows down in the turns before: as much
+        as skids can, backwards from where the stop begins to brake.
+        """
+        most, track, step = self.control.most, self.track, self.step
+        out = [most] * len(self.table)
+        if math.isinf(most) or math.isinf(track.stop_from):
+            return out
+        braking = track.stop_from + BEFORE_BRAKING * most
+        square = (ARRIVAL * most) ** 2
+        for i in range(min(int(braking / step), self.last), -1, -1):
+            *_, along, left, bend, _ = self.table[i]
+            speed = math.sqrt(square)
+            gain = self.snow.glide_acceleration(along, STANDARD_GRAVITY, speed)
+            side = abs(bend * most * most - left)  # from the speed to hold: one who is slow brakes less
+            if step * i < track.stop_from and side > LEAST_SIDE_FORCE:
+                gain -= side * math.tan(self.control.skid)
+            square = max(square - 2.0 * gain * step, 1.0)
+            out[i] = min(math.sqrt(square), most)
+            if square >= most * most and step * i < track.stop_from:
+                break
+        return out
 
     def at(self, arc: float) -> list[float]:
         """Return gravity along and to the left, curvature, normal force and swing at `arc` [m]; then the first three
@@ -160,12 +192,14 @@ class _Rider:
         """Return v' [m/s^2]."""
         along, left, bend, normal, swing, *_ = self.at(arc)
         glide = self.snow.glide_acceleration(along, normal, speed)
-        if stopping:
-            x = min(max((abs(steering) - BRAKE_FROM) / (BRAKE_TO - BRAKE_FROM), 0.0), 1.0)
-            share = x * x * (3.0 - 2.0 * x)
-            soft = min(speed / SOFT_SPEED, 1.0)
-            return (1.0 - share) * glide - share * self.control.deceleration * soft
-        return glide + (left - bend * speed * speed) * math.tan(steering) - swing / math.cos(steering)
+        sideways = 1.0 - _smooth_step(arc - self.track.stop_from, 0.0, SKID_FADES) if stopping else 1.0
+        if sideways > 0.0:
+            skid = (left - bend * speed * speed) * math.tan(steering) - swing / math.cos(steering)
+            glide += sideways * skid
+        if not stopping:
+            return glide
+        share = _smooth_step(abs(steering), BRAKE_FROM, BRAKE_TO)
+        return (1.0 - share) * glide - share * self.control.deceleration * min(speed / SOFT_SPEED, 1.0)
 
     def steering(self, arc: float, speed: float, stopping: bool) -> float:
         """Return the steering angle [rad] to aim at; it looks ahead by the time the skis take to follow."""
@@ -173,15 +207,23 @@ class _Rider:
             return self.control.stop_side * ACROSS
         if math.isinf(self.control.most):
             return 0.0
-        *_, along, left, bend, _ = self.at(arc + 3.0 * LAG * speed)
+        ahead = arc + 3.0 * LAG * speed
+        *_, along, left, bend, _ = self.at(ahead)
+        most = self.most[min(int(ahead / self.step), self.last)]
         speed = math.sqrt(max(speed * speed + self.at(arc)[-1], 0.0))
         glide = self.snow.glide_acceleration(along, STANDARD_GRAVITY, speed)
-        brake = glide + (speed - AIM * self.control.most) / CONTROL_TIME
+        brake = glide + (speed - AIM * most) / CONTROL_TIME
         if brake <= 0.0:
             return 0.0
         side = bend * speed * speed - left
         angle = math.atan(brake * side / (side * side + LEAST_SIDE_FORCE**2))
         return min(max(angle, -self.control.skid), self.control.skid)
+
+
+def _smooth_step(value: float, low: float, high: float) -> float:
+    """Return 0 up to `low`, 1 from `high` on."""
+    x = min(max((value - low) / (high - low), 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
 
 
 def _ride(rows: np.ndarray, length: float, stopped_at: float | None) -> Ride:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .run_spec import RunSpec
     from .sections import CourseSpec
 
-BYTES_PER_STEP = 3100
+BYTES_PER_STEP = 3800
 """Memory of one recorded step [bytes]: about 195 numbers of 8 bytes, twice while the recording is put together."""
 SECONDS_PER_STEP = 0.8e-3
 """Waiting time of one step [s], measured on one slow core with checks and recording."""

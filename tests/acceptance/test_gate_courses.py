@@ -22,9 +22,13 @@ COURSES = {
 ROLLING = ("rolling_slalom", "rolling_giant_slalom")
 
 
-def assert_gates_are_passed_as_asked(recording: Recording, count: int) -> None:
-    """Nobody fell, and both skis passed every pole on its side, 5 cm at most nearer or farther than asked."""
-    assert recording.status == "finished" and recording.ski_error.max() <= 0.010
+def assert_gates_are_passed_as_asked(recording: Recording, count: int, stop_from: float) -> None:
+    """Nobody fell, and both skis passed every pole on its side, 5 cm at most nearer or farther than asked.
+
+    From `stop_from` [m] on skis lie across the way and slide: nothing holds them on a line there.
+    """
+    assert recording.status == "finished"
+    assert recording.ski_error[recording.arc_length < stop_from].max() <= 0.010
     passing = recorded_gates(recording)
     assert len(passing.gates) == count and passing.passed.all()
     np.testing.assert_allclose(passing.distance, passing.gates.distance, atol=0.05)
@@ -48,7 +52,7 @@ def steepness(spec: RunSpec, length: float) -> np.ndarray:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COURSES)
 def test_every_gate_of_a_shipped_course_is_passed_on_its_side_at_its_distance(name):
-    assert_gates_are_passed_as_asked(simulated(name), COURSES[name])
+    assert_gates_are_passed_as_asked(simulated(name), COURSES[name], planned(name).track.stop_from)
 
 
 @pytest.mark.slow
@@ -71,8 +75,9 @@ def test_gates_on_waves_of_five_degrees_are_passed_all_the_same(name, count, len
     spec = preset(name, {"slope.kind": "grid", "slope.grid_file": str(grid)})
     found = steepness(spec, length)
     assert found.min() == pytest.approx(10.0, abs=0.5) and found.max() == pytest.approx(20.0, abs=0.5)
-    recording = run_simulation(make_plan(spec))[0]
-    assert_gates_are_passed_as_asked(recording, count)
+    run = make_plan(spec)
+    recording = run_simulation(run)[0]
+    assert_gates_are_passed_as_asked(recording, count, run.track.stop_from)
     assert_skied_as_a_strong_skier_could(recording)
 
 

@@ -224,12 +224,12 @@ def snow_bounds(naive: NaiveModel, snow: Snowpack, edge_angle: np.ndarray) -> tu
 
 
 def hinge_bounds(naive: NaiveModel) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations (31,) that keep every hinge within its range by 0.1 deg over the next 30 ms, at most 800 rad/s^2."""
+    """Accelerations (31,) that keep every hinge within its range by 0.5 deg in the next 30 ms, at most 800 rad/s^2."""
     lower, upper = [], []
     model = naive.model
     for hinge in range(31):
         angle, rate = naive.data.qpos[model.actuated_qpos[hinge]], naive.data.qvel[model.actuated_dof[hinge]]
-        margin = np.deg2rad(0.1)
+        margin = np.deg2rad(0.5)
         for limit, out in ((model.joint_lower[hinge] + margin, lower), (model.joint_upper[hinge] - margin, upper)):
             out.append(np.clip(4.0 * (limit - angle - 0.03 * rate) / 0.03**2, -800.0, 800.0))
     return np.array(lower), np.array(upper)

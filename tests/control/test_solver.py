@@ -219,7 +219,7 @@ def test_program_that_contradicts_itself_is_recognised_and_answered_without_hing
 
 
 def test_end_stops_hold_hinges_that_muscles_cannot():
-    """The same skier with bones and boots: every hinge is stopped within its range, those that run into an end by it."""
+    """The same skier with bones and boots: every hinge stops within its range, those that run into an end by it."""
     formulation, problem = racing(12.0)
     assert is_feasible(dense(formulation, problem))
     solution = OsqpSolver(formulation).solve(copy_of(problem))

