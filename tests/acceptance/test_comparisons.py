@@ -111,7 +111,7 @@ def test_open_loop_stays_on_the_snow():
 def test_open_loop_falls_within_six_turns():
     """However slow: errors of lean and heading add up, and nothing takes them back."""
     for speed in (5, 9):
-        changes = {"simulation.time_step": 0.004, "technique.controller": "open_loop", "course.start_speed": speed}
+        changes = {"simulation.time_step": 0.002, "technique.controller": "open_loop", "course.start_speed": speed}
         recording = simulated("paper_main", changes)
         assert recording.status == "fell" and np.abs(recording.track_offset[:, 0]).max() > 1.0
 

@@ -72,7 +72,7 @@ def test_gates_on_waves_of_five_degrees_are_passed_all_the_same(name, count, len
     wave = np.tan(np.radians(5.0)) * 40.0 / (2.0 * np.pi) * np.sin(2.0 * np.pi * down / 40.0)
     grid = tmp_path / "waves.npz"
     np.savez(grid, height=np.repeat(wave[:, None], 61, axis=1), spacing=1.0, origin=[-20.0, -30.0])
-    spec = preset(name, {"slope.kind": "grid", "slope.grid_file": str(grid)})
+    spec = preset(name, {"slope.kind": "grid", "slope.grid_file": str(grid), "course.finish": "glide"})
     found = steepness(spec, length)
     assert found.min() == pytest.approx(10.0, abs=0.5) and found.max() == pytest.approx(20.0, abs=0.5)
     run = make_plan(spec)
