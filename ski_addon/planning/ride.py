@@ -161,6 +161,7 @@ class _Rider:
         return [a + share * (b - a) for a, b in zip(self.table[index], self.table[index + 1], strict=True)]
 
     def ride(self) -> Ride:
+        """Return the ride to the end of the track, or until the skier stands long enough or sticks."""
         rows: list[tuple[float, float, float, float]] = []
         arc, speed, stopped_at = 0.0, self.track.start_speed, None
         wanted, first, second, steering = 0.0, 0.0, 0.0, 0.0

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .sections import CourseSpec
 
 BYTES_PER_STEP = 3800
-"""Memory of one recorded step [bytes]: about 195 numbers of 8 bytes, twice while the recording is put together."""
+"""Memory of one recorded step [bytes]: about 240 numbers of 8 bytes, twice while the recording is put together."""
 SECONDS_PER_STEP = 0.8e-3
 """Waiting time of one step [s], measured on one slow core with checks and recording."""
 USUAL_FRICTION, USUAL_DRAG = 0.08, 0.003

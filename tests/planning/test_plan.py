@@ -282,3 +282,12 @@ def test_angulation_auto_grows_with_the_turn():
     upright = righted(planned("paper_main", {**MAIN, "technique.angulation": -1}))
     assert abs(none) < 0.08 < 0.3 < slow < quick < 0.8
     assert upright == pytest.approx(1.0, abs=0.08)
+
+
+def test_run_that_stops_keeps_to_its_speed_on_the_straight_way_to_the_stop():
+    """Nothing brakes there: the skier has slowed down in the turns before."""
+    run = planned("steep")
+    speed = np.linalg.norm(np.gradient(run.plan.com, run.plan.time, axis=0), axis=1)
+    there = run.plan.arc_length > run.track.stop_from
+    assert speed[there].max() > 0.9 * run.spec.course.target_speed
+    assert speed.max() <= 1.1 * run.spec.course.target_speed
