@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from .body import SkierModel, build_skier_model
 from .course import Track, build_track
+from .errors import SpecError
 from .planning import MotionPlan, as_planned, plan_motion
 from .simulation import Progress, Recording, Simulation, check_pushes, simulate
 from .spec import RunSpec
@@ -26,9 +27,14 @@ class Planned:
 def make_plan(spec: RunSpec) -> Planned:
     """Validate `spec` and plan its run.
 
-    Raises `SpecError` for a bad document and `PlanInfeasible` for a track that cannot be skied.
+    Raises `SpecError` for a bad document or a figure that is no alpine skier, and `PlanInfeasible` for a track that
+    cannot be skied.
     """
     spec.validate()
+    if spec.figure.kind != "alpine":
+        hint = 'show it with the command preview, or set figure.kind to "alpine"'
+        problem = "has no whole physics, which is for alpine skiers"
+        raise SpecError("figure.kind", spec.figure.kind, hint=hint, problem=problem)
     terrain = build_terrain(spec.slope)
     believed = as_planned(spec)
     track = build_track(believed, terrain)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from .estimate import Estimate, estimate
 from .fields import FieldInfo
+from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
 from .rows import GateSpec, PointSpec, PushSpec
@@ -23,6 +24,7 @@ __all__ = [
     "CourseSpec",
     "Estimate",
     "FieldInfo",
+    "FigureSpec",
     "GateSpec",
     "PointSpec",
     "Preset",

@@ -56,7 +56,7 @@ On the command line single keys are changed with `--set`, where words need no qu
 (`--set course.turn_radius=18 --set technique.angulation=auto`, and `--set gate.2.radius=12` for the second gate), and
 parts are laid over a run with `--part`. Rows of a part take the place of all the run's rows of that kind.
 
-This page is made from the tables of keys in `ski_addon/spec/sections.py` and `ski_addon/spec/rows.py` by
+This page is made from the tables of keys in `ski_addon/spec/` by
 `python -m ski_addon.spec.reference`.
 """
 

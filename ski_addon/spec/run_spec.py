@@ -12,6 +12,7 @@ from typing import Any
 
 from . import document, row_values, table, values
 from .fields import ROWS, rows, text
+from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import ground_beside
 from .rows import GateSpec, PointSpec, PushSpec
@@ -23,7 +24,7 @@ SCHEMA_VERSION = 1
 
 @dataclass(frozen=True)
 class RunSpec:
-    """One run: skier, slope, course, technique, snow, simulation and bake, and rows of gates, points and pushes.
+    """One run: skier, slope, course, technique, figure, snow, simulation, bake, and rows of gates, points and pushes.
 
     The same document serves the sidebar, a preset, the command line and the farm. `from_toml`, `from_dict` and
     `with_overrides` return checked specs; call `validate` on one built from the section classes by hand.
@@ -35,6 +36,7 @@ class RunSpec:
     slope: SlopeSpec = field(default_factory=SlopeSpec)
     course: CourseSpec = field(default_factory=CourseSpec)
     technique: TechniqueSpec = field(default_factory=TechniqueSpec)
+    figure: FigureSpec = field(default_factory=FigureSpec)
     snow: SnowSpec = field(default_factory=SnowSpec)
     simulation: SimulationSpec = field(default_factory=SimulationSpec)
     bake: BakeSpec = field(default_factory=BakeSpec)

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import SpecError
 from .fields import ROWS, FieldInfo, field_infos
+from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
@@ -19,6 +20,7 @@ SECTIONS: Mapping[str, type] = MappingProxyType(
         "slope": SlopeSpec,
         "course": CourseSpec,
         "technique": TechniqueSpec,
+        "figure": FigureSpec,
         "snow": SnowSpec,
         "simulation": SimulationSpec,
         "bake": BakeSpec,

@@ -10,8 +10,8 @@ import pytest
 from ski_addon.animation.bone_map import BoneEntry, BoneMap
 from ski_addon.animation.keyframes import BoneKeyframes, RestPose, bone_keyframes
 from ski_addon.animation.poses import BodyPoses, sample_body_poses
-from ski_addon.blender.skier.figure import rest_configuration
 from ski_addon.body import Skeleton, forward_kinematics
+from ski_addon.body.rest import rest_configuration
 from ski_addon.errors import MissingInputError, SpecError
 from ski_addon.frames import matrix_from_quaternion, rotation_about
 from ski_addon.spec import find_document

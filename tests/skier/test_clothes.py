@@ -8,11 +8,12 @@ import pytest
 from ski_addon.blender.skier.boots import boots
 from ski_addon.blender.skier.build import body_part
 from ski_addon.blender.skier.clothes import jacket, trousers
-from ski_addon.blender.skier.figure import Figure, build_figure, rest_configuration
+from ski_addon.blender.skier.figure import Figure, build_figure
 from ski_addon.blender.skier.hands import gloves
 from ski_addon.blender.skier.head import head, helmet_surface
 from ski_addon.blender.skier.shapes import Part
 from ski_addon.body import Skeleton, build_skeleton, forward_kinematics
+from ski_addon.body.rest import rest_configuration
 from ski_addon.spec import SkierSpec
 
 

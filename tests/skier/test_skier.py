@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from ski_addon.blender.skier.build import EQUIPMENT, build_parts
-from ski_addon.blender.skier.figure import build_figure, rest_configuration
+from ski_addon.blender.skier.figure import build_figure
 from ski_addon.blender.skier.shapes import Part
 from ski_addon.blender.skier.skis import half_width
 from ski_addon.body import Skeleton, build_skeleton, forward_kinematics
+from ski_addon.body.rest import rest_configuration
 from ski_addon.spec import SkierSpec
 
 PEOPLE = [

@@ -39,6 +39,6 @@ def equipment_part(figure: Figure, body: str) -> Part:
 
 
 def build_parts(skeleton: Skeleton) -> dict[str, Part]:
-    """Return {"body", "ski.L", "ski.R", "pole.L", "pole.R"}: pieces at rest, as `figure.rest_configuration` stands."""
+    """Return {"body", "ski.L", "ski.R", "pole.L", "pole.R"}: pieces at rest, as `body.rest` has it."""
     figure = build_figure(skeleton)
     return {"body": body_part(figure), **{name: equipment_part(figure, name) for name in EQUIPMENT}}

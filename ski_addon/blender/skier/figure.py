@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...body.kinematics import forward_kinematics
+from ...body.rest import rest_frames
 from ...frames import Array
 
 if TYPE_CHECKING:
@@ -43,24 +43,15 @@ class Figure:
         return self.z("ski.L") + SOLE_ABOVE_SKI_BASE
 
 
-def rest_configuration(skeleton: Skeleton) -> Array:
-    """Return the zero configuration (nq,) with the ski bases at z = 0 and the pelvis above the origin."""
-    qpos = np.zeros(skeleton.nq)
-    qpos[3] = 1.0
-    position, _ = forward_kinematics(skeleton, qpos[None])
-    qpos[2] = -float(position[0, skeleton.body("ski.L"), 2])
-    return qpos
-
-
 def build_figure(skeleton: Skeleton) -> Figure:
     """Return the measures of `skeleton` at rest."""
-    position, rotation = forward_kinematics(skeleton, rest_configuration(skeleton)[None])
+    position, rotation = rest_frames(skeleton)
     mass_index = float(skeleton.mass.sum()) / skeleton.height**2
     names = skeleton.body_names
     return Figure(
         skeleton=skeleton,
-        place={name: position[0, i] for i, name in enumerate(names)},
-        turn={name: rotation[0, i] for i, name in enumerate(names)},
+        place={name: position[i] for i, name in enumerate(names)},
+        turn={name: rotation[i] for i, name in enumerate(names)},
         h=skeleton.height,
         girth=float(np.clip(np.sqrt(mass_index / REFERENCE_BODY_MASS_INDEX), 0.85, 1.3)),
     )
