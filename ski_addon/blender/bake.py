@@ -1,7 +1,8 @@
-"""Bake: a recording becomes keyframes on a skier's armature."""
+"""Bake: world poses become keyframes on a figure's armature; the poses of a recording on a skier's."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,12 +12,13 @@ import numpy as np
 
 from ..animation.bone_map import BoneMap
 from ..animation.keyframes import BoneKeyframes, bone_keyframes
-from ..animation.poses import Channel, sample_body_poses, sample_channels
+from ..animation.poses import BodyPoses, Channel, sample_body_poses, sample_channels
 from ..body import Skeleton, build_skeleton
 from ..errors import SpecError
 from ..spec import BakeSpec, RunSpec, SkierSpec
 from .channels import KeyWriter, assign_action, bake_action
 from .rig import build_rig, rest_pose
+from .skier.figure import Figure, build_figure
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
@@ -72,13 +74,30 @@ def bake_recording(
     poses = sample_body_poses(recording, skeleton, scene_rate(scene), options.subframes, options.frame_start)
     if armature is None:
         armature = new_skier(skier, skeleton, scene)
-    check_armature(armature, bone_map, skeleton)
-    rest = rest_pose(armature, bone_map, skeleton)
+    channels = sample_channels(recording, poses.time)
+    return bake_poses(poses, channels, armature, build_figure(skeleton), bone_map, scene, options.action)
+
+
+def bake_poses(
+    poses: BodyPoses,
+    channels: tuple[Channel, ...],
+    armature: bpy.types.Object,
+    figure: Figure,
+    bone_map: BoneMap,
+    scene: bpy.types.Scene,
+    name: str,
+) -> BakeResult:
+    """Bake `poses` and `channels` of `figure` onto `armature`; `name` is that of a new action.
+
+    The frame range of scene and action is set. Nothing else of the file is changed.
+    """
+    check_armature(armature, bone_map, poses.body_names)
+    rest = rest_pose(armature, bone_map, figure)
     keyframes = bone_keyframes(poses, bone_map, rest, np.array(armature.matrix_world.inverted()))
-    action, slot, channelbag = bake_action(armature, options.action)
+    action, slot, channelbag = bake_action(armature, name)
     writer = KeyWriter(channelbag, poses.frame)
     _write_bones(armature, keyframes, writer)
-    _write_channels(armature, sample_channels(recording, poses.time), writer)
+    _write_channels(armature, channels, writer)
     assign_action(armature, action, slot)
     _set_range(scene, action, poses.frame)
     return BakeResult(armature, action, float(poses.frame[0]), float(poses.frame[-1]))
@@ -103,11 +122,14 @@ def _measures(skier: SkierSpec) -> dict[str, float | str]:
     return dict(RunSpec(skier=skier).to_dict()["skier"])
 
 
-def check_armature(armature: bpy.types.Object, bone_map: BoneMap, skeleton: Skeleton) -> None:
-    """Raise `SpecError` unless every bone of `bone_map` is there and those that move are free to."""
+def check_armature(armature: bpy.types.Object, bone_map: BoneMap, bodies: Iterable[str]) -> None:
+    """Raise `SpecError` unless every bone of `bone_map` is there and those that move are free to.
+
+    `bodies` are the names of all bodies that bones may follow.
+    """
     if armature.type != "ARMATURE":
         raise SpecError(armature.name, armature.type, "ARMATURE", "choose a skier's armature", problem="is not an")
-    bone_map.check(armature.data.bones.keys(), skeleton.body_names)
+    bone_map.check(armature.data.bones.keys(), bodies)
     for entry in bone_map.entries:
         if entry.location and armature.data.bones[entry.bone].use_connect:
             hint = "turn its Connected off, or take location out of the bone map"

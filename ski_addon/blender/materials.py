@@ -2,54 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import bpy
 
+from .skier.paints import Paint, paint_of
 
-@dataclass(frozen=True)
-class Paint:
-    """Look of one material: sRGB `colour` as hex, `roughness`, `metallic` and `coat` 0..1."""
-
-    colour: str
-    roughness: float = 0.6
-    metallic: float = 0.0
-    coat: float = 0.0
-
-
-PALETTE: dict[str, Paint] = {
-    "jacket": Paint("d23b26", 0.62),
-    "jacket_yoke": Paint("1d2b45", 0.62),
-    "jacket_accent": Paint("f1e9da", 0.60),
-    "jacket_trim": Paint("16203a", 0.65),
-    "trousers": Paint("243352", 0.66),
-    "trousers_stripe": Paint("d23b26", 0.62),
-    "trousers_trim": Paint("11182a", 0.70),
-    "helmet": Paint("eceae4", 0.22, coat=0.6),
-    "helmet_stripe": Paint("d23b26", 0.25, coat=0.6),
-    "helmet_trim": Paint("1b1f27", 0.45),
-    "goggles_lens": Paint("e08a1e", 0.08, metallic=0.85, coat=1.0),
-    "goggles_frame": Paint("14161b", 0.35),
-    "goggles_strap": Paint("20242d", 0.75),
-    "skin": Paint("d9a184", 0.55),
-    "gloves": Paint("1c1f26", 0.60),
-    "gloves_cuff": Paint("d23b26", 0.62),
-    "boots": Paint("e3e1db", 0.28, coat=0.3),
-    "boots_trim": Paint("23304c", 0.40),
-    "boots_sole": Paint("17191e", 0.70),
-    "buckles": Paint("b9bec6", 0.25, metallic=0.9),
-    "skis": Paint("f0b429", 0.22, coat=0.7),
-    "skis_accent": Paint("1d2b45", 0.22, coat=0.7),
-    "skis_stripe": Paint("fbf7ec", 0.22, coat=0.7),
-    "skis_base": Paint("101216", 0.35),
-    "skis_edge": Paint("8d949d", 0.30, metallic=0.8),
-    "bindings": Paint("1a1c21", 0.40),
-    "bindings_accent": Paint("d23b26", 0.35),
-    "poles": Paint("2b2f37", 0.30, metallic=0.5),
-    "poles_accent": Paint("e9e5da", 0.40),
-    "poles_grip": Paint("15171b", 0.60),
-}
-"""Look by the material names the pieces of the skier carry."""
 PREFIX = "Ski "
 
 
@@ -61,8 +17,8 @@ def linear_colour(hex_colour: str) -> tuple[float, float, float, float]:
 
 
 def paint_material(name: str) -> bpy.types.Material:
-    """Return the material of the palette entry `name`, made on first use and kept after that."""
-    return painted(PREFIX + name.replace("_", " "), PALETTE[name])
+    """Return the material of the paint `name`, made on first use and kept after that."""
+    return painted(PREFIX + name.replace("_", " "), paint_of(name))
 
 
 def painted(name: str, paint: Paint) -> bpy.types.Material:

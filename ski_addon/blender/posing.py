@@ -1,4 +1,4 @@
-"""The skier held still at moments of a recording, without keyframes."""
+"""A figure held still at moments of a run, without keyframes."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import numpy as np
 
 from ..animation.bone_map import BoneMap
 from ..animation.keyframes import bone_keyframes
-from ..animation.poses import body_poses_at
+from ..animation.poses import BodyPoses, body_poses_at
 from ..frames import Array
 from .bake import BONE_MAP
 from .rig import Rig, rest_pose
+from .skier.figure import Figure, build_figure
 
 if TYPE_CHECKING:
     from ..body import Skeleton
@@ -21,11 +22,15 @@ if TYPE_CHECKING:
 
 
 def posed(rig: Rig, recording: Recording, skeleton: Skeleton, time: Array) -> Iterator[int]:
-    """Pose `rig` at each of `time` [s] in turn, yielding its index."""
-    bone_map = BoneMap.load(BONE_MAP)
+    """Pose the skier `rig` at each of `time` [s] of `recording` in turn, yielding its index."""
     poses = body_poses_at(recording, skeleton, time)
-    keyframes = bone_keyframes(poses, bone_map, rest_pose(rig.armature, bone_map, skeleton))
-    for index in range(len(time)):
+    return posed_as(rig, build_figure(skeleton), BoneMap.load(BONE_MAP), poses)
+
+
+def posed_as(rig: Rig, figure: Figure, bone_map: BoneMap, poses: BodyPoses) -> Iterator[int]:
+    """Pose `rig` of `figure` in each of `poses` in turn, yielding its index."""
+    keyframes = bone_keyframes(poses, bone_map, rest_pose(rig.armature, bone_map, figure))
+    for index in range(len(poses.time)):
         for channels in keyframes.channels:
             bone = rig.armature.pose.bones[channels.bone]
             bone.rotation_quaternion = channels.rotation[index]
@@ -60,6 +65,6 @@ def leave_copies(rig: Rig, collection: bpy.types.Collection) -> Array:
 
 
 def remove_rig(rig: Rig) -> None:
-    """Remove a skier's objects from the file."""
+    """Remove a figure's objects from the file."""
     for obj in (*rig.meshes, rig.armature):
         bpy.data.objects.remove(obj)

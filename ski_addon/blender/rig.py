@@ -1,4 +1,4 @@
-"""The skier's armature: one bone a body, named after it, under one root bone that nothing animates."""
+"""A figure's armature: one bone a body, named after it, under one root bone that nothing animates."""
 
 from __future__ import annotations
 
@@ -11,22 +11,24 @@ from mathutils import Matrix, Vector
 
 from ..animation.bone_map import BoneMap
 from ..animation.keyframes import RestPose
+from .bone_lines import bone_line, is_joined
 from .bone_shapes import bone_shape
 from .meshes import part_object, skin_to
-from .skier.build import EQUIPMENT, body_part, equipment_part
-from .skier.figure import Figure, build_figure
+from .skier.build import body_part, equipment_part
+from .skier.figure import Figure, build_figure, figure_of
 
 if TYPE_CHECKING:
     from ..body.skeleton import Skeleton
+    from ..turning.figures import FigureModel
 
 ROOT = "root"
-FREE_BONES = ("pelvis", "ski.L", "ski.R", "pole.L", "pole.R", "upper_arm.L", "upper_arm.R", "thigh.L", "thigh.R")
-"""Bones that are not joined to the end of their parent."""
+NAMES = {"alpine": "Skier", "snowboard": "Snowboarder", "telemark": "Telemark skier", "bicycle": "Cyclist"}
+"""What the armature of each kind of figure is called."""
 
 
 @dataclass(frozen=True)
 class Rig:
-    """The objects of one skier: `armature`, `body` mesh and `equipment` meshes by body name."""
+    """The objects of one figure: `armature`, `body` mesh and `equipment` meshes by body name."""
 
     armature: bpy.types.Object
     body: bpy.types.Object
@@ -34,35 +36,46 @@ class Rig:
 
     @property
     def meshes(self) -> tuple[bpy.types.Object, ...]:
-        """All mesh objects of the skier."""
+        """All mesh objects of the figure."""
         return (self.body, *self.equipment.values())
 
 
-def build_rig(skeleton: Skeleton, scene: bpy.types.Scene, name: str = "Skier") -> Rig:
+def build_rig(skeleton: Skeleton, scene: bpy.types.Scene, name: str = NAMES["alpine"]) -> Rig:
     """Make the skier of `skeleton` in a new collection of `scene`; selection and active object stay as they are."""
-    figure = build_figure(skeleton)
+    return _build(build_figure(skeleton), scene, name)
+
+
+def build_figure_rig(model: FigureModel, scene: bpy.types.Scene, name: str | None = None) -> Rig:
+    """Make a figure of any kind in a new collection of `scene`, as `build_rig` makes the alpine skier."""
+    return _build(figure_of(model), scene, name or NAMES[model.kind])
+
+
+def _build(figure: Figure, scene: bpy.types.Scene, name: str) -> Rig:
     collection = bpy.data.collections.new(name)
     scene.collection.children.link(collection)
     armature = _armature_object(figure, name)
     collection.objects.link(armature)
     body = part_object(f"{name} body", body_part(figure), collection)
-    equipment = {key: part_object(f"{name} {key}", equipment_part(figure, key), collection) for key in EQUIPMENT}
+    equipment = {key: part_object(f"{name} {key}", equipment_part(figure, key), collection) for key in figure.gear}
     for obj in (body, *equipment.values()):
         skin_to(obj, armature)
     return Rig(armature, body, equipment)
 
 
 def find_rig(armature: bpy.types.Object) -> Rig:
-    """Return the rig around an `armature` that `build_rig` made, wherever its meshes are linked."""
+    """Return the rig around an `armature` that was built here, wherever its meshes are linked."""
     children = {obj.vertex_groups[0].name if len(obj.vertex_groups) == 1 else "body": obj for obj in armature.children}
-    return Rig(armature, children["body"], {name: children[name] for name in EQUIPMENT})
+    body = children.pop("body")
+    return Rig(
+        armature, body, {bone.name: children[bone.name] for bone in armature.data.bones if bone.name in children}
+    )
 
 
-def rest_pose(armature: bpy.types.Object, bone_map: BoneMap, skeleton: Skeleton) -> RestPose:
-    """Return the rest pose of `armature` (parents first) beside the bodies of `skeleton` at rest."""
+def rest_pose(armature: bpy.types.Object, bone_map: BoneMap, figure: Skeleton | Figure) -> RestPose:
+    """Return the rest pose of `armature` (parents first) beside the bodies of `figure` (or of a skier) at rest."""
+    figure = figure if isinstance(figure, Figure) else build_figure(figure)
     bones = list(armature.data.bones)
     names = [bone.name for bone in bones]
-    figure = build_figure(skeleton)
     return RestPose(
         bones=tuple(names),
         parent=np.array([names.index(bone.parent.name) if bone.parent else -1 for bone in bones]),
@@ -76,34 +89,6 @@ def _body_matrix(figure: Figure, body: str) -> np.ndarray:
     matrix[:3, :3] = figure.turn[body]
     matrix[:3, 3] = figure.place[body]
     return matrix
-
-
-def bone_line(figure: Figure, body: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return head and tail [m] of the bone of `body` at rest, and the direction of its z axis."""
-    part, _, side = body.partition(".")
-    place, h = figure.place, figure.h
-    up, fore = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
-    following = {
-        "pelvis": "abdomen",
-        "abdomen": "chest",
-        "chest": "head",
-        "upper_arm": f"forearm.{side}",
-        "forearm": f"hand.{side}",
-        "thigh": f"shank.{side}",
-        "shank": f"foot.{side}",
-    }
-    head = place[body]
-    if part in following:
-        return head, place[following[part]], -fore if part in ("pelvis", "abdomen", "chest") else fore
-    ends = {
-        "head": (head + 0.124 * h * up, -fore),
-        "hand": (head - 0.085 * h * up, fore),
-        "foot": (head + np.array([0.11 * h, 0.0, 0.0]), up),
-        "ski": (head + 0.35 * figure.skeleton.ski_length * fore, up),
-        "pole": (head - figure.turn[body][:, 2] * 0.9 * figure.skeleton.pole_length, figure.turn[body][:, 0]),
-    }
-    tail, z_axis = ends[part]
-    return head, tail, z_axis
 
 
 def _armature_object(figure: Figure, name: str) -> bpy.types.Object:
@@ -130,15 +115,13 @@ def _edit_bones(data: bpy.types.Armature, figure: Figure) -> None:
     root.head, root.tail = Vector((0.0, 0.0, 0.0)), Vector((0.3 * figure.h, 0.0, 0.0))
     root.align_roll(Vector((0.0, 0.0, 1.0)))
     root.use_deform = False
-    names = figure.skeleton.body_names
-    for index, name in enumerate(names):
+    for name, parent in figure.parent.items():
         bone = data.edit_bones.new(name)
         head, tail, z_axis = bone_line(figure, name)
         bone.head, bone.tail = Vector(head), Vector(tail)
         bone.align_roll(Vector(z_axis))
-        parent = figure.skeleton.parent[index]
-        bone.parent = data.edit_bones[names[parent]] if parent >= 0 else root
-        bone.use_connect = name not in FREE_BONES
+        bone.parent = data.edit_bones[parent] if parent else root
+        bone.use_connect = is_joined(figure, name)
 
 
 def _dress_bones(armature: bpy.types.Object, figure: Figure) -> None:
@@ -149,15 +132,15 @@ def _dress_bones(armature: bpy.types.Object, figure: Figure) -> None:
     for pose_bone in armature.pose.bones:
         name = pose_bone.name
         pose_bone.rotation_mode = "QUATERNION"
-        group = "Root" if name == ROOT else "Equipment" if name in EQUIPMENT else "Body"
+        group = "Root" if name == ROOT else "Equipment" if name in figure.gear else "Body"
         groups[group].assign(pose_bone.bone)
         side = name[-2:]
         pose_bone.bone.color.palette = {".L": "THEME01", ".R": "THEME04"}.get(side, "THEME09")
-        shape, scale = bone_shape(name, pose_bone.bone.length, figure.h)
+        shape, scale = bone_shape(name, pose_bone.bone.length, figure.h, figure.sizes)
         pose_bone.custom_shape = shape
         pose_bone.use_custom_shape_bone_size = False
         pose_bone.custom_shape_scale_xyz = scale
-        if name not in EQUIPMENT and name not in (ROOT, "foot.L", "foot.R"):
+        if name not in figure.gear and name not in (ROOT, "foot.L", "foot.R"):
             pose_bone.custom_shape_translation = (0.0, 0.5 * pose_bone.bone.length, 0.0)
 
 

@@ -52,7 +52,7 @@ def _shell(figure: Figure) -> Part:
     length, half = boot_length(figure), _half_width(figure)
     floor = figure.sole - figure.z("foot.L") + 0.012
     top = 0.030 * figure.h
-    rows = [_arch(x * length, w * half, floor, floor + t * (top - floor)) for x, w, t in _SHELL]
+    rows = [arch(x * length, w * half, floor, floor + t * (top - floor)) for x, w, t in _SHELL]
     return loft(np.stack(rows), _shell_material)
 
 
@@ -60,7 +60,7 @@ def _shell_material(row: int, column: int) -> str:
     return "boots_trim" if row in (9,) and 2 <= column <= 9 else "boots"
 
 
-def _arch(x: float, half: float, low: float, high: float) -> Array:
+def arch(x: float, half: float, low: float, high: float) -> Array:
     """Return a flat-bottomed arch (12, 3) across the foot at `x`."""
     y = half * np.array([-0.86, -1.0, -1.0, -0.90, -0.62, -0.25, 0.25, 0.62, 0.90, 1.0, 1.0, 0.86])
     z = low + (high - low) * np.array([0.0, 0.10, 0.42, 0.74, 0.93, 1.0, 1.0, 0.93, 0.74, 0.42, 0.10, 0.0])
@@ -123,7 +123,7 @@ def _shell_buckles(figure: Figure) -> list[Part]:
         rows = []
         for shift, grow in ((-0.032, 0.99), (-0.025, 1.06), (0.025, 1.06), (0.032, 0.99)):
             w, t = float(np.interp(x + shift, place, width)), float(np.interp(x + shift, place, top))
-            rows.append(_arch((x + shift) * length, grow * w * half, floor, floor + grow * t * rise))
+            rows.append(arch((x + shift) * length, grow * w * half, floor, floor + grow * t * rise))
         parts.append(loft(np.stack(rows), "boots_trim", (False, False)))
         parts.append(_lever((x * length, 1.02 * half, floor + 0.40 * float(np.interp(x, place, top)) * rise)))
     return parts

@@ -98,7 +98,7 @@ def jacket(figure: Figure) -> Part:
 def trousers(figure: Figure) -> Part:
     """Return the seat and both legs, down to the hems over the boots."""
     leg = _leg(figure)
-    return join([_seat(figure), leg, leg.mirrored()])
+    return join([seat(figure), leg, leg.mirrored()])
 
 
 def _trunk(figure: Figure) -> Part:
@@ -110,7 +110,7 @@ def _trunk(figure: Figure) -> Part:
         for (z, side, front, back), g in zip(_TRUNK, widths, strict=True)
     ]
     part = stack(rings, TRUNK_POINTS, _trunk_material, (False, False), _ZIP_WIDTH)
-    part.weights = _trunk_weights(figure, part.vertices)
+    part.weights = trunk_weights(figure, part.vertices)
     return part
 
 
@@ -122,7 +122,8 @@ def _trunk_material(row: int, column: int) -> str:
     return "jacket_accent" if row == _ACCENT_ROW else "jacket"
 
 
-def _trunk_weights(figure: Figure, vertices: Array) -> dict[str, Array]:
+def trunk_weights(figure: Figure, vertices: Array) -> dict[str, Array]:
+    """Return the weights of a jacket's trunk: the spine, the hem on the thighs, the shoulders on the arms."""
     h = figure.h
     z = vertices[:, 2]
     joints = [figure.z("abdomen"), figure.z("chest")]
@@ -143,9 +144,10 @@ def _trunk_weights(figure: Figure, vertices: Array) -> dict[str, Array]:
     return weights
 
 
-def _limb_rings(
+def limb_rings(
     rows: tuple[tuple[float, float, float, float], ...], top: Array, bottom: Array, scale: float, x: float = 0.0
 ) -> list[Ring]:
+    """Return rings along a limb from `top` to `bottom` (3,) [m]; `rows` of share of the way, side, front, back."""
     return [
         Ring(
             float(top[2] + share * (bottom[2] - top[2])),
@@ -161,18 +163,25 @@ def _limb_rings(
 
 def _sleeve(figure: Figure) -> Part:
     h = figure.h
-    shoulder, elbow, wrist = (figure.place[name] for name in ("upper_arm.L", "forearm.L", "hand.L"))
-    rings = _limb_rings(_SLEEVE, shoulder, wrist, h * figure.girth)
+    shoulder, wrist = (figure.place[name] for name in ("upper_arm.L", "hand.L"))
+    rings = limb_rings(_SLEEVE, shoulder, wrist, h * figure.girth)
     cap = dome(rings[0], 0.019 * h * figure.girth, 4)[::-1]
     part = stack(
         [*cap, *rings], LIMB_POINTS, lambda row, column: _sleeve_material(row - len(cap), column), (True, False)
     )
-    z = part.vertices[:, 2]
-    part.weights = chain_weights(z, ("upper_arm.L", "forearm.L"), [float(elbow[2])], [0.035 * h])
-    chest = 0.4 * smooth_step(z, float(shoulder[2]) - 0.02 * h, float(shoulder[2]) + 0.035 * h)
-    part.weights["upper_arm.L"] = part.weights["upper_arm.L"] * (1.0 - chest)
-    part.weights["chest"] = chest
+    part.weights = arm_weights(figure, part.vertices)
     return part
+
+
+def arm_weights(figure: Figure, vertices: Array) -> dict[str, Array]:
+    """Return the weights of a left sleeve."""
+    h, shoulder = figure.h, figure.z("upper_arm.L")
+    z = vertices[:, 2]
+    weights = chain_weights(z, ("upper_arm.L", "forearm.L"), [figure.z("forearm.L")], [0.035 * h])
+    chest = 0.4 * smooth_step(z, shoulder - 0.02 * h, shoulder + 0.035 * h)
+    weights["upper_arm.L"] = weights["upper_arm.L"] * (1.0 - chest)
+    weights["chest"] = chest
+    return weights
 
 
 def _sleeve_material(row: int, column: int) -> str:
@@ -187,16 +196,23 @@ def _sleeve_material(row: int, column: int) -> str:
 
 def _leg(figure: Figure) -> Part:
     h = figure.h
-    hip, knee, ankle = (figure.place[name] for name in ("thigh.L", "shank.L", "foot.L"))
-    rings = _limb_rings(_LEG, hip, ankle, h * (0.5 + 0.5 * figure.girth))
+    hip, ankle = (figure.place[name] for name in ("thigh.L", "foot.L"))
+    rings = limb_rings(_LEG, hip, ankle, h * (0.5 + 0.5 * figure.girth))
     cap = dome(rings[0], 0.044 * h, 4)[::-1]
     part = stack([*cap, *rings], LIMB_POINTS, _leg_material, (True, False))
-    z = part.vertices[:, 2]
-    part.weights = chain_weights(z, ("thigh.L", "shank.L"), [float(knee[2])], [0.04 * h])
-    pelvis = 0.5 * smooth_step(z, float(hip[2]) - 0.01 * h, float(hip[2]) + 0.05 * h)
-    part.weights["thigh.L"] = part.weights["thigh.L"] * (1.0 - pelvis)
-    part.weights["pelvis"] = pelvis
+    part.weights = leg_weights(figure, part.vertices)
     return part
+
+
+def leg_weights(figure: Figure, vertices: Array) -> dict[str, Array]:
+    """Return the weights of a left trouser leg."""
+    h, hip = figure.h, figure.z("thigh.L")
+    z = vertices[:, 2]
+    weights = chain_weights(z, ("thigh.L", "shank.L"), [figure.z("shank.L")], [0.04 * h])
+    pelvis = 0.5 * smooth_step(z, hip - 0.01 * h, hip + 0.05 * h)
+    weights["thigh.L"] = weights["thigh.L"] * (1.0 - pelvis)
+    weights["pelvis"] = pelvis
+    return weights
 
 
 def _leg_material(row: int, column: int) -> str:
@@ -205,7 +221,8 @@ def _leg_material(row: int, column: int) -> str:
     return "trousers_stripe" if column == 4 and row >= 4 else "trousers"
 
 
-def _seat(figure: Figure) -> Part:
+def seat(figure: Figure) -> Part:
+    """Return the seat of the trousers."""
     h, girth = figure.h, figure.girth
     base = figure.z("pelvis")
     rings = [Ring(base + z * h, s * h * girth, f * h * girth, b * h * girth, power=2.3) for z, s, f, b in _PELVIS]

@@ -60,3 +60,36 @@ def _knuckles(size: float) -> list[Part]:
         x = (0.215 - 0.145 * index) * size
         parts.append(finger.moved((x, 0.125 * size, -0.52 * size)))
     return parts
+
+
+# as _FIST, for an open hand in a mitten
+_MITTEN = (
+    (0.27, 0.225, 0.245, 0.245, 0.00),
+    (0.28, 0.275, 0.292, 0.292, 0.00),
+    (0.22, 0.285, 0.302, 0.302, 0.00),
+    (0.00, 0.245, 0.265, 0.265, 0.00),
+    (-0.10, 0.175, 0.215, 0.220, 0.00),
+    (-0.22, 0.160, 0.250, 0.250, 0.02),
+    (-0.42, 0.155, 0.275, 0.265, 0.04),
+    (-0.62, 0.145, 0.270, 0.260, 0.07),
+    (-0.82, 0.125, 0.250, 0.235, 0.12),
+    (-0.96, 0.100, 0.200, 0.185, 0.17),
+    (-1.03, 0.060, 0.110, 0.105, 0.20),
+)
+
+
+def mittens(figure: Figure) -> Part:
+    """Return both mittens, the fingers a little bent, bound to the hands."""
+    size = figure.skeleton.lengths["hand"]
+    rings = [
+        Ring(z * size, side * size, front * size, back * size, y=-inward * size, power=2.4)
+        for z, side, front, back, inward in _MITTEN
+    ]
+    hand = stack(rings, 14, lambda row, _column: "gloves_cuff" if row < 3 else "gloves")
+    ring = Ring(0.0, 0.095 * size, 0.095 * size, 0.095 * size)
+    rows = [ring.scaled(0.8, 0.02 * size), ring.scaled(1.1, -0.16 * size), ring.scaled(1.0, -0.32 * size)]
+    thumb = stack([*rows, *dome(rows[-1], -0.08 * size, 3)], 8, "gloves")
+    tilt = rotation_about("x", -0.35) @ rotation_about("y", -0.40)
+    left = join([hand, thumb.turned(tilt).moved((0.20 * size, -0.04 * size, -0.24 * size))])
+    left = left.moved(figure.place["hand.L"]).bound("hand.L")
+    return join([left, left.mirrored()])

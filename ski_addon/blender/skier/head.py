@@ -29,10 +29,19 @@ GOGGLES_LOW, GOGGLES_HIGH, GOGGLES_HALF_ANGLE = 0.034, 0.085, np.deg2rad(74.0)
 
 def head(figure: Figure) -> Part:
     """Return face, helmet and goggles with their strap, bound to the head."""
-    parts = [_face(), _nose(), _helmet(), _visor(), _goggles(), _strap()]
+    return on_head(figure, [*face(), _helmet(), _visor(), _goggles(), _strap()])
+
+
+def on_head(figure: Figure, parts: list[Part]) -> Part:
+    """Return `parts`, drawn in shares of stature in the head's frame, where the head of `figure` is."""
     whole = join(parts)
     whole.vertices = whole.vertices * figure.h
     return whole.moved(figure.place["head"]).bound("head")
+
+
+def face() -> list[Part]:
+    """Return neck, face and nose, in shares of stature."""
+    return [_face(), _nose()]
 
 
 def _face() -> Part:

@@ -18,7 +18,7 @@ POLE_ABOVE_HAND = 0.055
 
 def ski(figure: Figure) -> Part:
     """Return the left ski and its binding, in the ski's frame (origin in the middle of the base)."""
-    return join([_board(figure), *_binding(figure)]).bound("ski.L")
+    return join([board(figure), *_binding(figure)]).bound("ski.L")
 
 
 def pole(figure: Figure) -> Part:
@@ -36,7 +36,8 @@ def half_width(x: Array, length: float, waist: float, radius: float) -> Array:
     return side * np.sqrt(np.maximum(1.0 - shovel**2.2, 0.01)) * np.sqrt(np.maximum(1.0 - 0.75 * tail**2.5, 0.01))
 
 
-def _board(figure: Figure) -> Part:
+def board(figure: Figure) -> Part:
+    """Return the left ski without binding, in its own frame, unbound."""
     skeleton = figure.skeleton
     length = skeleton.ski_length
     share = np.concatenate(
