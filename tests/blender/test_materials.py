@@ -23,7 +23,7 @@ def test_every_piece_has_a_paint(core, materials) -> None:
     skeleton = core("body").build_skeleton(core("spec").SkierSpec())
     parts = core("blender.skier.build").build_parts(skeleton)
     used = {material for part in parts.values() for material in part.materials}
-    assert used == set(materials.PALETTE)
+    assert used == set(core("blender.skier.paints").PALETTE)
 
 
 def test_a_material_is_made_once(materials) -> None:
@@ -32,8 +32,9 @@ def test_a_material_is_made_once(materials) -> None:
     assert first.name == "Ski jacket"
 
 
-def test_a_material_looks_the_same_in_the_viewport(materials) -> None:
-    for name, paint in materials.PALETTE.items():
+def test_a_material_looks_the_same_in_the_viewport(core, materials) -> None:
+    paints = core("blender.skier.paints")
+    for name, paint in (paints.PALETTE | paints.OTHER_FIGURES).items():
         material = materials.paint_material(name)
         shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
         assert tuple(material.diffuse_color) == pytest.approx(tuple(shader.inputs["Base Color"].default_value))

@@ -76,7 +76,7 @@ def _frame(points: Points) -> Part:
     seat_cluster = p.bottom + 0.72 * np.linalg.norm(seat_top - p.bottom) * seat_axis
     low = p.on_axis(p.wheel_radius + 0.062)
     tubes = [
-        tube([low - 0.012 * p.axis, p.head + 0.004 * p.axis], 0.0235, "bicycle_frame", 14),
+        tube([low - 0.012 * p.axis, p.head + 0.004 * p.axis], 0.0235, "bicycle_frame_accent", 14),
         tube([seat_cluster - 0.03 * seat_axis, p.head - 0.030 * p.axis], (0.0165, 0.0195), "bicycle_frame", 12),
         tube([p.bottom, low + 0.020 * p.axis], (0.0215, 0.0225), "bicycle_frame", 12),
         tube([p.bottom, seat_cluster + 0.022 * seat_axis], 0.0175, "bicycle_frame", 12),

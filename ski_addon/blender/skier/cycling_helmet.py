@@ -11,8 +11,8 @@ from .shapes import Part, loft
 from .tubes import tube
 
 _AROUND = 36
-_RIBS = (-0.72, -0.38, 0.0, 0.38, 0.72)
-"""Where the ribs run, as shares of the helmet's half width."""
+_RIBS = (0.38, 0.72)
+"""Where the ribs beside the middle one run, as shares of the helmet's half width."""
 _LENS_LOW, _LENS_HIGH, _LENS_HALF_ANGLE = 0.047, 0.074, np.deg2rad(62.0)
 
 
@@ -36,18 +36,21 @@ def _shell() -> Part:
 
 def _ribs() -> list[Part]:
     """Return bars from the brow over the top to the nape."""
-    parts = []
-    for share in _RIBS:
-        line = []
-        front = float(np.arcsin(0.9 * share))
-        for along in np.linspace(-1.0, 1.0, 19):
-            azimuth = front if along > 0.0 else np.pi - front
-            polar = abs(along) * float(_rim_angle(np.array(azimuth)))
-            side = np.arcsin(np.clip(share * 0.62, -1.0, 1.0))
-            line.append(_over(azimuth, polar, side))
-        radius = 0.0085 * np.sqrt(np.clip(1.35 - np.linspace(-1.0, 1.0, 19) ** 2, 0.15, 1.0))
-        parts.append(tube(line, radius, "helmet", 8))
-    return parts
+    left = [_rib(share) for share in _RIBS]
+    return [_rib(0.0), *left, *(rib.mirrored() for rib in left)]
+
+
+def _rib(share: float) -> Part:
+    """Return the bar that starts and ends beside the middle by that `share` of the helmet's half width."""
+    line = []
+    front = float(np.arcsin(0.9 * share))
+    side = float(np.arcsin(0.62 * share))
+    for along in np.linspace(-1.0, 1.0, 19):
+        azimuth = front if along > 0.0 else np.pi - front
+        polar = abs(along) * float(_rim_angle(np.array(azimuth)))
+        line.append(_over(azimuth, polar, side))
+    radius = 0.0085 * np.sqrt(np.clip(1.35 - np.linspace(-1.0, 1.0, 19) ** 2, 0.15, 1.0))
+    return tube(line, radius, "helmet", 8)
 
 
 def _over(azimuth: float, polar: float, side: float) -> Array:
@@ -92,22 +95,17 @@ def _glasses() -> Part:
 
 def _arms() -> list[Part]:
     """Return the glasses' arms, back to the ears."""
-    arms = []
-    for side in (1.0, -1.0):
-        start = _lens(np.array(side * _LENS_HALF_ANGLE), 0.95, 0.0)
-        arms.append(
-            tube([start, (0.000, side * 0.0475, 0.070), (-0.020, side * 0.0470, 0.066)], 0.0022, "goggles_frame", 6)
-        )
-    return arms
+    start = _lens(np.array(_LENS_HALF_ANGLE), 0.95, 0.0)
+    arm = tube([start, (0.000, 0.0475, 0.070), (-0.020, 0.0470, 0.066)], 0.0022, "goggles_frame", 6)
+    return [arm, arm.mirrored()]
 
 
 def _straps() -> list[Part]:
     """Return the straps from before and behind each ear to the chin."""
-    chin = np.array([0.030, 0.0, 0.0005])
-    parts = []
-    for side in (1.0, -1.0):
-        joint = np.array([0.004, side * 0.0475, 0.030])
-        ends = [(0.026, side * 0.0500, 0.062), (-0.030, side * 0.0520, 0.058)]
-        parts += [tube([end, joint], 0.0016, "helmet_trim", 6) for end in ends]
-        parts.append(tube([joint, (0.020, side * 0.040, 0.012), chin], 0.0018, "helmet_trim", 6))
-    return parts
+    joint, chin = np.array([0.004, 0.0475, 0.030]), np.array([0.030, 0.0, 0.0005])
+    left = [
+        tube([(0.026, 0.0500, 0.062), joint], 0.0016, "helmet_trim", 6),
+        tube([(-0.030, 0.0520, 0.058), joint], 0.0016, "helmet_trim", 6),
+        tube([joint, (0.020, 0.040, 0.012), chin], 0.0018, "helmet_trim", 6),
+    ]
+    return [*left, *(strap.mirrored() for strap in left)]

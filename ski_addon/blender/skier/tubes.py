@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -11,8 +12,8 @@ from .shapes import Part, facing_out, loft
 
 
 def tube(
-    points: Sequence[Sequence[float]] | Array,
-    radius: float | Sequence[float],
+    points: Sequence[Any] | Array,
+    radius: float | Sequence[float] | Array,
     material: str,
     count: int = 10,
     *,
@@ -77,6 +78,9 @@ def _across(points: Array, closed: bool) -> tuple[Array, Array]:
     else:
         tangent = normalized(np.gradient(points, axis=0))
     hint = np.eye(3)[int(np.argmin(np.abs(tangent).max(axis=0)))]
+    if closed:  # flat enough that one direction serves all round, and meets itself
+        first_axis = normalized(hint - (tangent @ hint)[:, None] * tangent)
+        return np.cross(tangent, first_axis), first_axis
     first = [normalized(hint - (hint @ tangent[0]) * tangent[0])]
     for direction in tangent[1:]:
         first.append(normalized(first[-1] - (first[-1] @ direction) * direction))
