@@ -99,19 +99,20 @@ class Body:
     arc_length: np.ndarray = field(default_factory=lambda: np.zeros(1))
 
 
-def plan_ride(track: Track, snow: Snow, body: Body, control: SpeedControl) -> Ride:
-    """Return how `track` is ridden from its start speed, by Heun's method in steps of `TIME_STEP`.
+def plan_ride(track: Track, snow: Snow, body: Body, control: SpeedControl, step: float = TIME_STEP) -> Ride:
+    """Return how `track` is ridden from its start speed, by Heun's method in steps of `step` [s].
 
     The ride ends at the end of the track or, with a stop, when the skier has stood long enough; where friction stops
     the skier before, it ends there.
     """
-    return _Rider(track, snow, body, control).ride()
+    return _Rider(track, snow, body, control, step).ride()
 
 
 class _Rider:
     """Integrates one ride; plain floats and lists, for this is a loop of thousands of small steps."""
 
-    def __init__(self, track: Track, snow: Snow, body: Body, control: SpeedControl) -> None:
+    def __init__(self, track: Track, snow: Snow, body: Body, control: SpeedControl, time_step: float) -> None:
+        self.time_step = time_step
         count = max(int(math.ceil(track.length / TABLE_STEP)), 2)
         self.length, self.step = track.length, track.length / count
         places = np.linspace(0.0, track.length, count + 1)
@@ -162,6 +163,7 @@ class _Rider:
 
     def ride(self) -> Ride:
         """Return the ride to the end of the track, or until the skier stands long enough or sticks."""
+        dt = self.time_step
         rows: list[tuple[float, float, float, float]] = []
         arc, speed, stopped_at = 0.0, self.track.start_speed, None
         wanted, first, second, steering = 0.0, 0.0, 0.0, 0.0
@@ -170,24 +172,24 @@ class _Rider:
             stopping = arc >= self.track.stop_from
             gain = self.acceleration(arc, speed, steering, stopping)
             rows.append((arc, speed, gain, steering))
-            stood += TIME_STEP if stopping and speed < STANDING else 0.0
+            stood += dt if stopping and speed < STANDING else 0.0
             if arc >= self.length or stood > self.control.stand:
                 break
             if not stopping and speed < SLOWEST and gain <= 0.0:
                 stopped_at = arc
                 break
             target = self.steering(arc, speed, stopping)
-            most = (FASTEST_STOP if stopping else FASTEST_STEERING) * TIME_STEP
+            most = (FASTEST_STOP if stopping else FASTEST_STEERING) * dt
             wanted += min(max(target - wanted, -most), most)
-            first += TIME_STEP / LAG * (wanted - first)
-            second += TIME_STEP / LAG * (first - second)
-            steering += TIME_STEP / LAG * (second - steering)
-            guess = max(speed + TIME_STEP * gain, 0.0)
-            ahead = self.acceleration(arc + TIME_STEP * speed, guess, steering, stopping)
-            after = max(speed + 0.5 * TIME_STEP * (gain + ahead), 0.0)
-            arc += 0.5 * TIME_STEP * (speed + after)
+            first += dt / LAG * (wanted - first)
+            second += dt / LAG * (first - second)
+            steering += dt / LAG * (second - steering)
+            guess = max(speed + dt * gain, 0.0)
+            ahead = self.acceleration(arc + dt * speed, guess, steering, stopping)
+            after = max(speed + 0.5 * dt * (gain + ahead), 0.0)
+            arc += 0.5 * dt * (speed + after)
             speed = after
-        return _ride(np.array(rows), self.length, stopped_at)
+        return _ride(np.array(rows), dt, self.length, stopped_at)
 
     def acceleration(self, arc: float, speed: float, steering: float, stopping: bool) -> float:
         """Return v' [m/s^2]."""
@@ -227,9 +229,9 @@ def _smooth_step(value: float, low: float, high: float) -> float:
     return x * x * (3.0 - 2.0 * x)
 
 
-def _ride(rows: np.ndarray, length: float, stopped_at: float | None) -> Ride:
+def _ride(rows: np.ndarray, step: float, length: float, stopped_at: float | None) -> Ride:
     """Return the ride of integrated rows, evenly in time up to the very end of the track."""
-    time = TIME_STEP * np.arange(len(rows))
+    time = step * np.arange(len(rows))
     arc, speed, gain, steering = np.ascontiguousarray(rows.T)
     if arc[-1] > length:  # the last step goes a little too far: end where the track does
         before = (speed[-2], length - arc[-2])

@@ -1,0 +1,94 @@
+"""Instant motion of any course: the leaning body along its track, in milliseconds, for the whole run.
+
+The track says where the support goes and `planning.ride` how fast; the lean is the bounded one of the pendulum over
+it. On bumps the body keeps to the ground's smooth course, as in the plan, and its lean is measured from the snow.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from ..course import Track, build_track
+from ..gravity import GRAVITY, STANDARD_GRAVITY
+from ..planning import as_planned
+from ..planning.line import body_normals
+from ..planning.plan import speed_control
+from ..planning.ride import Body, plan_ride
+from ..snow import Snow
+from ..spec import RunSpec
+from ..terrain import PlaneTerrain, Terrain, build_terrain
+from .body import TurningBody
+from .motion import TurningMotion
+from .trace import motion_on_ground
+from .way import Leaning, Way
+
+TIME_STEP = 0.01
+"""Time between neighbouring moments of a preview [s], about: a whole number of them makes the run."""
+RIDE_STEP = 0.02
+"""Step [s] in which a preview's speed is integrated."""
+CENTRE_HEIGHT = 0.49
+"""Height of a skier's centre of mass over the snow for each metre of body height, on boots and bent knees."""
+
+
+def preview_motion(spec: RunSpec) -> TurningMotion:
+    """Return the motion of the leaning body on the whole run of `spec`, whatever its course and ground.
+
+    Raises `SpecError` or `PlanInfeasible` for a course without a track. Where friction stops a skier on the way, the
+    motion ends.
+    """
+    terrain = build_terrain(spec.slope)
+    believed = as_planned(spec)
+    return preview_track(believed, build_track(believed, terrain), terrain)
+
+
+def body_of(spec: RunSpec) -> TurningBody:
+    """Return the turning body of a run's person: all mass at the height of a skier's centre of mass."""
+    return TurningBody(leg_length=CENTRE_HEIGHT * spec.skier.height)
+
+
+def preview_track(spec: RunSpec, track: Track, terrain: Terrain) -> TurningMotion:
+    """Return the motion of the leaning body along `track` on `terrain`."""
+    body = body_of(spec)
+    ups = None if isinstance(terrain, PlaneTerrain) else body_normals(track)
+    time, arc, speed = _ride(spec, track)
+    step = time[1]
+    first = Way.along(track, ups, step, arc, speed)
+    share = _inside(body, first, first.lean(body))  # the ride is that of the centre of mass, on its smaller circle
+    passed = np.concatenate(([0.0], np.cumsum(0.5 * step * (share[1:] + share[:-1]))))
+    time = _evenly(float(passed[-1]))
+    arc, speed = np.interp(time, passed, arc), np.interp(time, passed, speed / share)
+    way = Way.along(track, ups, time[1], arc, speed)
+    leaning = way.lean(body)
+    speed = speed * _inside(body, way, leaning)
+    motion = motion_on_ground(
+        body, terrain, time, way.position[:, :2], leaning.lean, leaning.lean_rate, way.curvature, speed
+    )
+    return motion if way.up is None else dataclasses.replace(motion, leg_force=_force(body, way, leaning, speed))
+
+
+def _ride(spec: RunSpec, track: Track) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return even times (n,) [s], and arc length [m] and speed [m/s] then."""
+    snow = Snow.of(spec.snow, spec.skier, spec.technique.tuck)
+    weight = -(track.surface_normal @ GRAVITY)
+    body = Body(weight, np.zeros_like(weight), track.arc_length)
+    ride = plan_ride(track, snow, body, speed_control(spec, track), RIDE_STEP)
+    time = _evenly(float(ride.time[-1]))
+    return time, np.interp(time, ride.time, ride.arc_length), np.interp(time, ride.time, ride.speed)
+
+
+def _evenly(duration: float) -> np.ndarray:
+    return np.linspace(0.0, duration, max(round(duration / TIME_STEP), 3) + 1)
+
+
+def _inside(body: TurningBody, way: Way, leaning: Leaning) -> np.ndarray:
+    """Return how much slower (n,) than the support the centre of mass is, which leans into the turn [VP93 Eq. 21]."""
+    return 1.0 - way.curvature * body.leg_length * np.sin(leaning.body_lean)
+
+
+def _force(body: TurningBody, way: Way, leaning: Leaning, speed: np.ndarray) -> np.ndarray:
+    """Return the leg's force (n,) [body weights] over bumpy ground, as the body over the smooth ground feels it."""
+    across = leaning.pull_left + np.square(way.speed) * way.curvature
+    force = body.leg_force(leaning.body_lean, leaning.body_lean_rate, way.curvature, speed, leaning.pull_into, across)
+    return np.hypot(*force) / STANDARD_GRAVITY
