@@ -36,8 +36,15 @@ class FigureSpec:
         word="auto",
         kinds=_LEGS,
     )
-    waist_bend: float = number(
-        0.4, 0, 1.2, "", "Waist bend", "How far the waist bends for each degree that the knees bend", kinds=_LEGS
+    waist_bend: float | Literal["auto"] = number(
+        "auto",
+        0,
+        1.2,
+        "",
+        "Waist bend",
+        "How far the waist bends for each degree that the knees bend; auto = usual for the figure",
+        word="auto",
+        kinds=_LEGS,
     )
     tilt: float = number(
         1.0,

@@ -85,6 +85,14 @@ def fork_place(sizes: dict[str, float]) -> np.ndarray:
     return np.array([sizes["wheelbase"] - back * np.sin(sizes["head_angle"]), 0.0, -back * np.cos(sizes["head_angle"])])
 
 
+def grip_places(sizes: dict[str, float]) -> np.ndarray:
+    """Return the places (2, 3) [m] of the left and the right grip in the fork's axes."""
+    bar = np.array([sizes["bar_forward"], 0.0, sizes["bar_height"] - sizes["wheel_radius"]])
+    middle = fork_turn(sizes).T @ (bar - fork_place(sizes))
+    half = np.array([0.0, 0.5 * sizes["bar_width"], 0.0])
+    return np.stack((middle + half, middle - half))
+
+
 def fork_turn(sizes: dict[str, float]) -> np.ndarray:
     """Return the rotation (3, 3) of the fork's frame against the frame's, with the bar straight."""
     return rotation_about("y", sizes["head_angle"] - 0.5 * np.pi)
