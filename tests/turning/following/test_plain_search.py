@@ -44,6 +44,5 @@ def test_limit_of_nodes_ends_the_search():
 
 
 def test_wide_range_of_rates_on_a_coarse_grid_leaves_only_straight_on():
-    """[reading h]"""
     plan = plain_plan(sine(rate=0.5, stages=10, inputs=5), body_on(sine().lane))
     assert plan.complete and np.abs(plan.rates[:6]).max() == 0.0
