@@ -7,13 +7,15 @@ skier's limbs; the physics of the run knows nothing of it.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..body.kinematics import forward_kinematics
-from ..frames import Array
+from ..frames import Array, matrix_from_quaternion
+from .poses import BodyPoses
 
 if TYPE_CHECKING:
     from ..body.skeleton import Skeleton
@@ -80,13 +82,34 @@ def gate_swings(recording: Recording, skeleton: Skeleton, gates: Gates) -> list[
     clock = np.asarray(recording.time, dtype=float) - recording.time[0]
     time = np.arange(0.0, clock[-1], STEP)
     index = np.searchsorted(clock, time).clip(0, len(clock) - 1)
-    pelvis = np.asarray(recording.qpos)[index, :2]
+    qpos = np.asarray(recording.qpos)
+
+    def balls(passing: slice) -> tuple[Array, Array]:
+        return _balls(skeleton.body_names, *forward_kinematics(skeleton, qpos[index[passing]]))
+
+    return _swings(time, qpos[index, :2], balls, gates)
+
+
+def pose_swings(poses: BodyPoses, gates: Gates) -> list[GateSwing | None]:
+    """Return how each of `gates` swings when a figure passes in `poses`, one every `STEP` from the start."""
+
+    def balls(passing: slice) -> tuple[Array, Array]:
+        turn = matrix_from_quaternion(poses.quaternion[passing])
+        return _balls(poses.body_names, poses.position[passing], turn)
+
+    return _swings(poses.time, poses.position[:, poses.body_names.index("pelvis"), :2], balls, gates)
+
+
+def _swings(
+    time: Array, pelvis: Array, balls: Callable[[slice], tuple[Array, Array]], gates: Gates
+) -> list[GateSwing | None]:
+    """Return how each of `gates` swings, with the `pelvis` (m, 2) [m] and the body's `balls` at `time` (m,) [s]."""
     swings: list[GateSwing | None] = []
     for foot, side in zip(gates.position, gates.side.tolist(), strict=True):
         near = np.flatnonzero(np.linalg.norm(pelvis - foot[:2], axis=1) < _NEAR)
         passing = slice(near[0], near[-1] + 1) if len(near) > 1 else slice(0, 0)
         towards = _towards(pelvis[passing], side)
-        pushed = _pushed(*_balls(skeleton, recording.qpos[index[passing]]), foot, towards)
+        pushed = _pushed(*balls(passing), foot, towards)
         swings.append(_swing(time[passing.start], pushed, towards) if np.any(pushed > 0.0) else None)
     return swings
 
@@ -98,17 +121,16 @@ def _towards(way: Array, side: int) -> Array:
     return np.asarray(towards / np.linalg.norm(towards))
 
 
-def _balls(skeleton: Skeleton, qpos: Array) -> tuple[Array, Array]:
-    """Return places (m, k, 3) [m] and radii (k,) [m] of balls along the limbs of a skier in the poses `qpos`."""
-    position, rotation = forward_kinematics(skeleton, qpos)
+def _balls(names: tuple[str, ...], position: Array, rotation: Array) -> tuple[Array, Array]:
+    """Return places (m, k, 3) [m] and radii (k,) [m] of balls along the limbs of a person whose bodies are so."""
     places, radii = [], []
     for first, last, radius in _LIMBS:
-        a, b = position[:, skeleton.body(first)], position[:, skeleton.body(last)]
+        a, b = position[:, names.index(first)], position[:, names.index(last)]
         shares = np.linspace(0.0, 1.0, _BALLS)
         places += [a + share * (b - a) for share in shares]
         radii += [radius] * len(shares)
     for name, up, radius in _ENDS:
-        body = skeleton.body(name)
+        body = names.index(name)
         places.append(position[:, body] + up * rotation[:, body, :, 2])
         radii.append(radius)
     return np.stack(places, axis=1), np.array(radii)

@@ -13,7 +13,8 @@ from ..terrain import build_terrain
 from .bake import scene_rate
 from .channels import MARK as BAKED
 from .gates import bake_gates, build_gates
-from .ski_tracks import build_ski_tracks
+from .ride import Ride, recorded_ride
+from .ski_tracks import build_traces
 from .slope import build_slope
 from .stage import swings_of
 
@@ -31,7 +32,19 @@ def update_ground(
     collection: bpy.types.Collection | None,
     options: BakeSpec | None = None,
 ) -> bpy.types.Collection:
-    """Put slope and tracks of `recording` into `collection` (default: a new one in `scene`) and return it.
+    """Put slope and tracks of `recording` into `collection`; see `renew_ground`."""
+    ride = recorded_ride(recording, build_skeleton(spec.skier))
+    return renew_ground(ride, spec, scene, collection, options)
+
+
+def renew_ground(
+    ride: Ride,
+    spec: RunSpec,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection | None,
+    options: BakeSpec | None = None,
+) -> bpy.types.Collection:
+    """Put slope and tracks of `ride` into `collection` (default: a new one in `scene`) and return it.
 
     Gates go into the collection "Gates" within it, with keys where the skier knocks them over; `options` gives the
     first frame. What an earlier bake put there is replaced; what the user put there stays.
@@ -40,12 +53,12 @@ def update_ground(
         collection = bpy.data.collections.new("Ski slope")
         scene.collection.children.link(collection)
     _clear(collection)
-    skeleton, terrain = build_skeleton(spec.skier), build_terrain(spec.slope)
-    made = [build_slope(terrain, np.asarray(recording.track_position), collection, far=())]
-    made += build_ski_tracks(recording, skeleton, terrain, collection)
+    terrain, track = build_terrain(spec.slope), np.asarray(ride.timeline.track_position)
+    made = [build_slope(terrain, track, collection, far=(), snow=ride.on_snow)]
+    made += build_traces(ride.traces, terrain, collection)
     if spec.course.kind == "gates":
         gates = build_gates(spec, terrain, _gates_within(collection))
-        swings = swings_of(recording, spec, skeleton, terrain)
+        swings = swings_of(ride, spec, terrain)
         bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start)
         made += [obj for objects in gates for obj in objects]
     for obj in made:

@@ -12,8 +12,14 @@ from .. import atomic
 from ..errors import BlenderMissingError, OutputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import bpy
+
     from ..simulation.recording import Recording
     from ..spec import RunSpec
+    from .bake import BakeResult
+    from .ride import Ride
 
 _LOG = logging.getLogger(__name__)
 
@@ -35,19 +41,33 @@ def bake_file(recording: Recording, spec: RunSpec, target: str | Path) -> Path:
     this is for Blender without a window.
     """
     require_blender("baking")
+    from ..body import build_skeleton
+    from .bake import bake_recording
+    from .ride import recorded_ride
+
+    ride = recorded_ride(recording, build_skeleton(spec.skier))
+    return write_file(ride, spec, target, lambda scene: bake_recording(recording, scene, options=spec.bake))
+
+
+def write_file(ride: Ride, spec: RunSpec, target: str | Path, bake: Callable[[bpy.types.Scene], BakeResult]) -> Path:
+    """Write `target`, a new .blend with the stage of `ride` and the figure that `bake` makes in its scene.
+
+    Raises as `bake_file`.
+    """
+    require_blender("baking")
     check_target(target)
     import bpy
 
-    from .bake import bake_recording, scene_rate
+    from .bake import scene_rate
     from .camera import build_follow_camera
     from .gates import bake_gates
-    from .stage import add_collection, build_stage, empty_file
+    from .stage import add_collection, empty_file, stage_ride
 
     scene = empty_file()
     scene.name = "Ski run"
     set_frame_rate(scene, spec.bake.fps)
-    stage = build_stage(recording, spec, scene)
-    result = bake_recording(recording, scene, options=spec.bake)
+    stage = stage_ride(ride, spec, scene)
+    result = bake(scene)
     bake_gates(stage.gates, stage.swings, scene_rate(scene), spec.bake.frame_start)
     build_follow_camera(result.armature, scene, add_collection(scene, "Camera"))
     scene.frame_set(scene.frame_start)

@@ -42,15 +42,17 @@ class Rig:
 
 def build_rig(skeleton: Skeleton, scene: bpy.types.Scene, name: str = NAMES["alpine"]) -> Rig:
     """Make the skier of `skeleton` in a new collection of `scene`; selection and active object stay as they are."""
-    return _build(build_figure(skeleton), scene, name)
+    return build_rig_of(build_figure(skeleton), scene, name)
 
 
 def build_figure_rig(model: FigureModel, scene: bpy.types.Scene, name: str | None = None) -> Rig:
     """Make a figure of any kind in a new collection of `scene`, as `build_rig` makes the alpine skier."""
-    return _build(figure_of(model), scene, name or NAMES[model.kind])
+    return build_rig_of(figure_of(model), scene, name)
 
 
-def _build(figure: Figure, scene: bpy.types.Scene, name: str) -> Rig:
+def build_rig_of(figure: Figure, scene: bpy.types.Scene, name: str | None = None) -> Rig:
+    """Make a figure of these measures in a new collection of `scene`."""
+    name = name or NAMES[figure.kind]
     collection = bpy.data.collections.new(name)
     scene.collection.children.link(collection)
     armature = _armature_object(figure, name)

@@ -1,10 +1,11 @@
-"""The tracks that the skis leave: a groove between two small ridges of pushed snow, laid on the slope.
+"""The tracks that skis and boards leave: a groove between two small ridges of pushed snow, laid on the slope.
 
-A ski that skids sweeps a band as wide as it lies across its way.
+A ski that skids sweeps a band as wide as it lies across its way. Wheels leave a narrow dark line.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import bpy
@@ -13,7 +14,7 @@ import numpy as np
 from ..body import Skeleton, forward_kinematics
 from ..frames import Array, normalized
 from ..terrain import Terrain
-from .slope import grid_faces, mesh_object, snow_material
+from .slope import grid_faces, meadow_material, mesh_object, snow_material
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
@@ -22,6 +23,8 @@ SPACING = 0.10
 """Distance between cross sections [m]."""
 CARVES = np.deg2rad(4.0)
 """A ski that points this little beside its way still carves [rad]."""
+TYRE_LINE_RISE = 0.004
+"""How far a wheel's line lies over the ground [m]."""
 # across the track, in half widths of the ski; height [m]; how much of the height grows with edging
 _PROFILE = (
     (-3.2, -0.010, 0.0),
@@ -31,6 +34,28 @@ _PROFILE = (
     (2.0, 0.020, 1.0),
     (3.2, -0.010, 0.0),
 )
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Where something slid or rolled: `place` (m, 3), directions to its left (m, 3), edge angles (m,) [rad].
+
+    `half_width` and `half_length` [m] are those of a ski or board; a wheel has no length.
+    """
+
+    name: str
+    place: Array
+    left: Array
+    edge: Array
+    half_width: float
+    half_length: float
+
+
+def ski_traces(recording: Recording, skeleton: Skeleton) -> list[Trace]:
+    """Return the traces of both skis of `recording`."""
+    size = 0.5 * skeleton.ski_width, 0.5 * skeleton.ski_length
+    paths = zip("LR", ski_paths(recording, skeleton), strict=True)
+    return [Trace(f"Ski track {side}", *path, *size) for side, path in paths]
 
 
 def ski_paths(recording: Recording, skeleton: Skeleton) -> list[tuple[Array, Array, Array]]:
@@ -101,16 +126,35 @@ def build_ski_tracks(
     recording: Recording, skeleton: Skeleton, terrain: Terrain, collection: bpy.types.Collection
 ) -> list[bpy.types.Object]:
     """Return the two new track meshes of `recording`."""
-    tracks = []
-    for side, (place, left, edge) in zip("LR", ski_paths(recording, skeleton), strict=True):
-        size = 0.5 * skeleton.ski_width, 0.5 * skeleton.ski_length
-        vertices = groove_vertices(place, left, edge, terrain, *size, seed=ord(side))
-        rows, columns = vertices.shape[:2]
-        faces = grid_faces(rows, columns)
-        obj = mesh_object(f"Ski track {side}", vertices.reshape(-1, 3), faces, collection)
-        obj.data.materials.append(snow_material())
-        obj.data.materials.append(snow_material("Ski snow groove", "d5e0ee"))
-        floor = np.tile(np.arange(columns - 1) == columns // 2 - 1, rows - 1).astype(np.int32)
-        obj.data.polygons.foreach_set("material_index", floor)
-        tracks.append(obj)
-    return tracks
+    return build_traces(ski_traces(recording, skeleton), terrain, collection)
+
+
+def build_traces(traces: list[Trace], terrain: Terrain, collection: bpy.types.Collection) -> list[bpy.types.Object]:
+    """Return a new mesh for each of `traces` on `terrain`."""
+    return [(_groove if trace.half_length else _line)(trace, terrain, collection) for trace in traces]
+
+
+def _groove(trace: Trace, terrain: Terrain, collection: bpy.types.Collection) -> bpy.types.Object:
+    size = trace.half_width, trace.half_length
+    vertices = groove_vertices(trace.place, trace.left, trace.edge, terrain, *size, seed=ord(trace.name[-1]))
+    rows, columns = vertices.shape[:2]
+    obj = mesh_object(trace.name, vertices.reshape(-1, 3), grid_faces(rows, columns), collection)
+    obj.data.materials.append(snow_material())
+    obj.data.materials.append(snow_material("Ski snow groove", "d5e0ee"))
+    floor = np.tile(np.arange(columns - 1) == columns // 2 - 1, rows - 1).astype(np.int32)
+    obj.data.polygons.foreach_set("material_index", floor)
+    return obj
+
+
+def _line(trace: Trace, terrain: Terrain, collection: bpy.types.Collection) -> bpy.types.Object:
+    normal = terrain.normal(trace.place[:, 0], trace.place[:, 1])
+    across = _across_the_way(trace.place, normal, trace.left)
+    rows = []
+    for side in (-1.0, 0.0, 1.0):
+        point = trace.place + side * trace.half_width * across
+        point[:, 2] = terrain.height(point[:, 0], point[:, 1])
+        rows.append(point + TYRE_LINE_RISE * normal)
+    vertices = np.stack(rows, axis=1)
+    obj = mesh_object(trace.name, vertices.reshape(-1, 3), grid_faces(*vertices.shape[:2]), collection)
+    obj.data.materials.append(meadow_material("Ski tyre line", "5f5138"))
+    return obj

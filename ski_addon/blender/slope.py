@@ -20,12 +20,17 @@ FAR, FAR_UPHILL = (120.0, 500.0, 2500.0), (60.0, 160.0)
 
 
 def build_slope(
-    terrain: Terrain, track: Array, collection: bpy.types.Collection, *, far: tuple[float, ...] = FAR
+    terrain: Terrain,
+    track: Array,
+    collection: bpy.types.Collection,
+    *,
+    far: tuple[float, ...] = FAR,
+    snow: bool = True,
 ) -> bpy.types.Object:
     """Return a new mesh of `terrain` round `track` (n, 3) [m, world]: fine near it, coarse out to `far` [m].
 
     Bumps, moguls and waves are followed closely near the track (see `ground_mesh`). Without `far` the mesh ends where
-    the terrain's known ground does; with it, the ground beyond is drawn too.
+    the terrain's known ground does; with it, the ground beyond is drawn too. Ground without `snow` is a meadow.
     """
     uphill = FAR_UPHILL if far else ()
     lines = (
@@ -33,7 +38,7 @@ def build_slope(
         _lines(track[:, 1], terrain.extent[2:], far, far),
     )
     obj = mesh_object("Slope", *ground_mesh(terrain.height, lines, track), collection)
-    obj.data.materials.append(snow_material())
+    obj.data.materials.append(snow_material() if snow else meadow_material())
     return obj
 
 
@@ -65,6 +70,31 @@ def mesh_object(name: str, vertices: Array, faces: list[Any], collection: bpy.ty
     return obj
 
 
+def meadow_material(name: str = "Ski meadow", colour: str = "8b955a") -> bpy.types.Material:
+    """Return short dry grass (made on first use)."""
+    existing = bpy.data.materials.get(name)
+    if existing is not None:
+        return existing
+    material, shader = new_material(name)
+    grass = linear_colour(colour)
+    material.diffuse_color = grass
+    shader.inputs["Base Color"].default_value = grass
+    shader.inputs["Roughness"].default_value = 0.95
+    shader.inputs["Specular IOR Level"].default_value = 0.1
+    tree = material.node_tree
+    place = tree.nodes.new("ShaderNodeNewGeometry")
+    patches = _noise(tree, place, scale=0.9, detail=6.0)
+    ramp = tree.nodes.new("ShaderNodeValToRGB")
+    for element, position, factor in zip(ramp.color_ramp.elements, (0.35, 0.65), (0.72, 1.18), strict=True):
+        element.position = position
+        element.color = (*(factor * c for c in grass[:3]), 1.0)
+    tree.links.new(patches.outputs[0], ramp.inputs["Fac"])
+    tree.links.new(ramp.outputs["Color"], shader.inputs["Base Color"])
+    blades = _bump(tree, place, scale=14.0, detail=8.0, distance=0.05)
+    tree.links.new(blades.outputs["Normal"], shader.inputs["Normal"])
+    return material
+
+
 def snow_material(name: str = "Ski snow", colour: str = "f4f7fb") -> bpy.types.Material:
     """Return groomed snow: nearly white, with fine grain and soft waves (made on first use)."""
     existing = bpy.data.materials.get(name)
@@ -86,12 +116,17 @@ def snow_material(name: str = "Ski snow", colour: str = "f4f7fb") -> bpy.types.M
 
 
 def _bump(tree: Any, place: Any, scale: float, detail: float, distance: float) -> Any:
-    noise = tree.nodes.new("ShaderNodeTexNoise")
-    noise.inputs["Scale"].default_value = scale
-    noise.inputs["Detail"].default_value = detail
+    noise = _noise(tree, place, scale, detail)
     bump = tree.nodes.new("ShaderNodeBump")
     bump.inputs["Distance"].default_value = distance
     bump.inputs["Strength"].default_value = 0.6
-    tree.links.new(place.outputs["Position"], noise.inputs["Vector"])
     tree.links.new(noise.outputs[0], bump.inputs["Height"])
     return bump
+
+
+def _noise(tree: Any, place: Any, scale: float, detail: float) -> Any:
+    noise = tree.nodes.new("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value = scale
+    noise.inputs["Detail"].default_value = detail
+    tree.links.new(place.outputs["Position"], noise.inputs["Vector"])
+    return noise

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from ..animation.gate_motion import GateSwing, gate_swings
-from ..body import Skeleton, build_skeleton
+from ..animation.gate_motion import GateSwing
+from ..body import build_skeleton
 from ..course import course_gates
 from ..spec import RunSpec
 from ..terrain import Terrain, build_terrain
 from .gates import build_gates
 from .light import build_sky, build_sun
+from .ride import Ride, recorded_ride
 from .scenery import build_mountains, build_trees
-from .ski_tracks import build_ski_tracks
+from .ski_tracks import build_traces
 from .slope import build_slope
 
 if TYPE_CHECKING:
@@ -31,9 +32,8 @@ EXPOSURE = 0.8
 
 @dataclass(frozen=True)
 class Stage:
-    """What stands round a run: its `skeleton` and `terrain`, the objects of each gate and how each gate `swings`."""
+    """What stands round a run: its `terrain`, the objects of each gate and how each gate `swings`."""
 
-    skeleton: Skeleton
     terrain: Terrain
     gates: list[list[bpy.types.Object]]
     swings: list[GateSwing | None]
@@ -62,14 +62,21 @@ def build_stage(
     sun_deg: tuple[float, float] = SUN,
     trees: bool = True,
 ) -> Stage:
-    """Set `scene` up round the track of `recording`; trees may be left out, gates stand upright.
+    """Set `scene` up round the track of `recording`; see `stage_ride`."""
+    ride = recorded_ride(recording, build_skeleton(spec.skier))
+    return stage_ride(ride, spec, scene, sun_deg=sun_deg, trees=trees)
+
+
+def stage_ride(
+    ride: Ride, spec: RunSpec, scene: bpy.types.Scene, *, sun_deg: tuple[float, float] = SUN, trees: bool = True
+) -> Stage:
+    """Set `scene` up round the way of `ride`; trees may be left out, gates stand upright.
 
     `sun_deg` are azimuth and height of the sun, see `build_sun`.
     """
-    skeleton, terrain = build_skeleton(spec.skier), build_terrain(spec.slope)
-    track = np.asarray(recording.track_position)
-    build_slope(terrain, track, add_collection(scene, "Slope"))
-    build_ski_tracks(recording, skeleton, terrain, add_collection(scene, "Ski tracks"))
+    terrain, track = build_terrain(spec.slope), np.asarray(ride.timeline.track_position)
+    build_slope(terrain, track, add_collection(scene, "Slope"), snow=ride.on_snow)
+    build_traces(ride.traces, terrain, add_collection(scene, "Ski tracks" if ride.on_snow else "Tyre lines"))
     gates = build_gates(spec, terrain, add_collection(scene, "Gates")) if spec.course.kind == "gates" else []
     scenery = add_collection(scene, "Scenery")
     if trees:
@@ -80,10 +87,10 @@ def build_stage(
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"
     scene.view_settings.exposure = EXPOSURE
-    return Stage(skeleton, terrain, gates, swings_of(recording, spec, skeleton, terrain))
+    return Stage(terrain, gates, swings_of(ride, spec, terrain))
 
 
-def swings_of(recording: Recording, spec: RunSpec, skeleton: Skeleton, terrain: Terrain) -> list[GateSwing | None]:
-    """Return how the gates of `spec` swing in `recording`, one entry a gate."""
+def swings_of(ride: Ride, spec: RunSpec, terrain: Terrain) -> list[GateSwing | None]:
+    """Return how the gates of `spec` swing in `ride`, one entry a gate."""
     gates = course_gates(spec, terrain)
-    return [] if gates is None else gate_swings(recording, skeleton, gates)
+    return [] if gates is None else ride.swings(gates)

@@ -14,6 +14,7 @@ from .views import choose_view, way
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
     from ..spec import RunSpec
+    from .ride import Ride
 
 SIZE = (1600, 900)
 SAMPLES = 20
@@ -37,22 +38,43 @@ def render_strobe(
     """
     require_blender("the picture")
     check_target(target)
+    from ..body import build_skeleton
+    from .ride import recorded_ride
+
+    ride = recorded_ride(recording, build_skeleton(spec.skier))
+    return render_ride(ride, spec, target, instants, stop=stop, size=size, samples=samples)
+
+
+def render_ride(
+    ride: Ride,
+    spec: RunSpec,
+    target: str | Path,
+    instants: int = 10,
+    *,
+    stop: bool = False,
+    size: tuple[int, int] = SIZE,
+    samples: int = SAMPLES,
+) -> Path:
+    """Write `target`, one picture of `ride` of any figure, as `render_strobe` does of a recording."""
+    require_blender("the picture")
+    check_target(target)
     from .camera import build_framing_camera, direction_from
     from .gates import pose_gates
     from .pictures import render_to, set_render
-    from .posing import leave_copies, posed, remove_rig
-    from .rig import build_rig
+    from .posing import leave_copies, posed_as, remove_rig
+    from .rig import build_rig_of
     from .scenery import build_trees
-    from .stage import add_collection, build_stage, empty_file
+    from .stage import add_collection, empty_file, stage_ride
 
     scene = empty_file()
-    view = choose_view(recording, spec, instants, stop=stop)
-    azimuth, descent = way(recording, view.time)
+    view = choose_view(ride.timeline, spec, instants, stop=stop)
+    azimuth, descent = way(ride.timeline, view.time)
     sun = azimuth + view.sun_deg, view.sun_height_deg
-    stage = build_stage(recording, spec, scene, sun_deg=sun, trees=False)
+    stage = stage_ride(ride, spec, scene, sun_deg=sun, trees=False)
     figures = add_collection(scene, "Instants")
-    rig = build_rig(stage.skeleton, scene)
-    points = [leave_copies(rig, figures) for _ in posed(rig, recording, stage.skeleton, view.time)]
+    rig = build_rig_of(ride.figure, scene)
+    poses = ride.poses_at(view.time)
+    points = [leave_copies(rig, figures) for _ in posed_as(rig, ride.figure, ride.bone_map, poses)]
     remove_rig(rig)
     pose_gates(stage.gates, stage.swings, view.time)
     set_render(scene, size, samples)
@@ -63,7 +85,9 @@ def render_strobe(
     look = {"lens": view.lens, "fill": FILL, "lift": view.lift}
     camera = build_framing_camera(seen, direction, scene, add_collection(scene, "Camera"), **look)
     outline = _outline(np.array(camera.matrix_world.translation), seen)
-    build_trees(stage.terrain, recording.track_position, scene.collection.children["Scenery"], clear=outline)
+    build_trees(
+        stage.terrain, np.asarray(ride.timeline.track_position), scene.collection.children["Scenery"], clear=outline
+    )
     render_to(scene, target)
     return Path(target)
 

@@ -1,4 +1,4 @@
-"""Where the turns of a recording are."""
+"""Where the turns of a timeline are."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ import numpy as np
 from ..frames import Array
 
 if TYPE_CHECKING:
-    from ..simulation.recording import Recording
+    from .ride import Timeline
 
 
-def turn_starts(recording: Recording) -> Array:
+def turn_starts(timeline: Timeline) -> Array:
     """Return the indices at which the skis change edges: where the sign of the turn phase changes."""
-    sign = np.sign(np.where(np.abs(recording.turn_phase) < 0.05, 0.0, recording.turn_phase))
+    sign = np.sign(np.where(np.abs(timeline.turn_phase) < 0.05, 0.0, timeline.turn_phase))
     known = np.flatnonzero(sign)
     change = np.flatnonzero(np.diff(sign[known]))
     return (known[change] + known[change + 1]) // 2
 
 
-def turn_apexes(recording: Recording) -> dict[str, int]:
+def turn_apexes(timeline: Timeline) -> dict[str, int]:
     """Return the indices of the apex of a left and a right turn and of the transition between them, mid-run."""
-    starts = turn_starts(recording)
-    phase = np.asarray(recording.turn_phase)
+    starts = turn_starts(timeline)
+    phase = np.asarray(timeline.turn_phase)
     middle = starts[len(starts) // 2] if len(starts) else len(phase) // 2
     edges = [0, *starts.tolist(), len(phase)]
     at = edges.index(middle) if middle in edges else 0

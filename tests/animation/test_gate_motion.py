@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from ski_addon.animation import gate_motion
-from ski_addon.animation.gate_motion import GateSwing, gate_swings
-from ski_addon.body import build_skeleton
+from ski_addon.animation.gate_motion import GateSwing, gate_swings, pose_swings
+from ski_addon.animation.poses import body_poses_at
+from ski_addon.body import build_skeleton, forward_kinematics
 from ski_addon.course import Gates
 from ski_addon.spec import RunSpec
 from tests.synthetic_motion import SPEED, synthetic_motion
@@ -60,7 +61,8 @@ def test_no_ball_of_the_body_is_within_the_pole(spec, recording) -> None:
     skeleton, gates = build_skeleton(spec.skier), gates_beside(recording, 2.0, 0.25)
     (swing,) = gate_swings(recording, skeleton, gates)
     index = np.arange(1700, 2400, 20)
-    places, radii = gate_motion._balls(skeleton, recording.qpos[index])
+    frames = forward_kinematics(skeleton, recording.qpos[index])
+    places, radii = gate_motion._balls(skeleton.body_names, *frames)
     angle = swing.at(index * 0.001)
     pole = np.stack((*(np.sin(angle) * swing.towards[:, None]), np.cos(angle)), axis=1)
     offset = places - gates.position[0]
@@ -76,3 +78,12 @@ def test_a_swing_turns_the_pole_towards_the_push() -> None:
     w, x, y, z = swing.quaternion(swing.at(np.array([0.5])))[0]
     up = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
     np.testing.assert_allclose(up, [0.6 * np.sin(0.5), -0.8 * np.sin(0.5), np.cos(0.5)], atol=1e-12)
+
+
+def test_poses_knock_a_gate_over_as_the_recording_they_are_from(spec, recording) -> None:
+    skeleton, gates = build_skeleton(spec.skier), gates_beside(recording, 2.0, 0.1)
+    poses = body_poses_at(recording, skeleton, np.arange(0.0, recording.time[-1], gate_motion.STEP))
+    (recorded,), (posed,) = gate_swings(recording, skeleton, gates), pose_swings(poses, gates)
+    assert recorded is not None and posed is not None
+    np.testing.assert_allclose(posed.angle, recorded.angle, atol=1e-6)
+    np.testing.assert_allclose(posed.towards, recorded.towards, atol=1e-6)
