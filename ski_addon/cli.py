@@ -254,6 +254,18 @@ def _add_robustness(subparsers: _Subparsers) -> None:
     _add_talk(parser)
 
 
+def _add_gallery(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "gallery",
+        "draw the figures of the 1993 paper",
+        "Turns by phase control and paths through obstacles, made anew from the paper's questions. Needs matplotlib.",
+    )
+    parser.add_argument("pictures", metavar="PICTURE", nargs="*", help="which ones, for instance figure_06 (all)")
+    _add_output(parser, "DIR", "folder for the pictures", required=True)
+    _add_talk(parser)
+
+
 def _add_demo(subparsers: _Subparsers) -> None:
     parser = _command(
         subparsers,
@@ -267,6 +279,6 @@ def _add_demo(subparsers: _Subparsers) -> None:
 
 COMMANDS = (
     *(_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_render, _add_validate),
-    *(_add_robustness, _add_demo),
+    *(_add_robustness, _add_gallery, _add_demo),
 )
 """What adds each command to the parser, in the order of the help."""

@@ -122,6 +122,21 @@ def robustness_command(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def gallery_command(arguments: argparse.Namespace) -> int:
+    """`gallery`: draw the figures of the 1993 paper."""
+    from .gallery import find_pictures, save_picture
+
+    talk, pictures, written = _talk(arguments), find_pictures(arguments.pictures), []
+    results.check_matplotlib("the gallery")
+    with atomic.output_folder(arguments.output) as folder:
+        for name, picture in pictures.items():
+            save_picture(picture, folder / f"{name}.png")
+            talk.say(f"{name}.png: {picture.title}")
+            written.append(str(folder / f"{name}.png"))
+    talk.give({"pictures": written})
+    return 0
+
+
 def demo_command(arguments: argparse.Namespace) -> int:
     """`demo`: the giant-slalom preset, simulated, baked and pictured."""
     results.check_blender("the demo")

@@ -37,10 +37,10 @@ def check_blender(needed_for: str) -> None:
         raise BlenderMissingError(needed_for)
 
 
-def check_matplotlib() -> None:
+def check_matplotlib(needed_for: str = "the report") -> None:
     """Raise `MissingLibraryError` unless matplotlib can be found."""
     if not _has_matplotlib():
-        raise MissingLibraryError("matplotlib", "the report")
+        raise MissingLibraryError("matplotlib", needed_for)
 
 
 def plan_summary(spec: RunSpec) -> dict[str, Any]:

@@ -12,6 +12,7 @@ ground of the paper.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -46,9 +47,10 @@ class TurningBody:
 
         `speed` [m/s] is that of the centre of mass.
         """
-        sine, cosine = np.sin(lean), np.cos(lean)
-        steering = curvature * np.square(speed) * cosine / (1.0 - curvature * self.leg_length * sine)
-        return (gravity_normal * sine + gravity_across * cosine - steering) / self._effective_length
+        pull = gravity_normal * np.sin(lean) + gravity_across * np.cos(lean)
+        return steered_acceleration(
+            pull, np.sin(lean), np.cos(lean), curvature, speed, self.leg_length, self.effective_length
+        )
 
     def curvature_for(
         self,
@@ -64,9 +66,9 @@ class TurningBody:
         1 / (l sin lean), the centre of mass on the turn's axis. This is the other root, in closed form; it is 0 for
         an upright body at rest, where the printed formula divides by 0.
         """
-        sine, cosine = np.sin(lean), np.cos(lean)
-        push = gravity_normal * sine + gravity_across * cosine - acceleration * self._effective_length
-        return push / (push * self.leg_length * sine + np.square(speed) * cosine)
+        pull = gravity_normal * np.sin(lean) + gravity_across * np.cos(lean)
+        push = pull - acceleration * self.effective_length
+        return push / (push * self.leg_length * np.sin(lean) + np.square(speed) * np.cos(lean))
 
     def leg_force(
         self,
@@ -94,9 +96,18 @@ class TurningBody:
         return left - gravity_across, up + gravity_normal
 
     @property
-    def _effective_length(self) -> Array | float:
+    def effective_length(self) -> Array | float:
         """(I + m l^2) / (m l) [m]."""
         return self.leg_length + self.inertia / self.leg_length
+
+
+def steered_acceleration(pull: Any, sine: Any, cosine: Any, curvature: Any, speed: Any, leg: Any, length: Any) -> Any:
+    """Return the lean's acceleration [rad/s^2] [VP93 Eq. 2], of numbers as of arrays.
+
+    `pull` [m/s^2] is gravity across the leg, `sine` and `cosine` those of the lean, `leg` and `length` [m] the body's
+    `leg_length` and `effective_length`.
+    """
+    return (pull - curvature * speed * speed * cosine / (1.0 - curvature * leg * sine)) / length
 
 
 def support_speed(lean: Array, curvature: Array, speed: Array | float, leg_length: Array | float) -> Array:
