@@ -71,7 +71,7 @@ def _bicycle(sizes: dict[str, float], place: dict[str, np.ndarray], at: Any) -> 
         rim = sizes["wheel_radius"] * np.stack((np.cos(round_), 0 * round_, np.sin(round_)), axis=1)
         lines += [
             (np.array([at(wheel, *point) for point in rim]), GEAR),
-            (np.array([at(wheel), at(wheel, *rim[0])]), GEAR),
+            (np.array([place[wheel], at(wheel, *rim[0])]), GEAR),
         ]
     grips = [at("fork", *grip) for grip in grip_places(sizes)]
     bar = [grips[0], 0.5 * (grips[0] + grips[1]), grips[1]]
@@ -91,7 +91,7 @@ def draw_sheet(figure: FigureModel, poses: BodyPoses, keys: list[int], titles: l
     sheet = Figure(figsize=(3.0 * len(keys), 6.4), layout="constrained")
     axes = sheet.subplots(2, len(keys), sharex=True, sharey=True, squeeze=False)
     for column, (key, title, frame) in enumerate(zip(keys, titles, frames, strict=True)):
-        origin = _stand(figure, poses, key)
+        origin = _stand(figure, poses, key, frame[:, 2])
         for points, colour in figure_lines(figure, poses, key):
             local = (points - origin) @ frame
             axes[0, column].plot(local[:, 0], local[:, 2], color=colour, lw=1.8, solid_capstyle="round")
@@ -106,7 +106,8 @@ def draw_sheet(figure: FigureModel, poses: BodyPoses, keys: list[int], titles: l
     return sheet
 
 
-def _stand(figure: FigureModel, poses: BodyPoses, key: int) -> np.ndarray:
+def _stand(figure: FigureModel, poses: BodyPoses, key: int, up: np.ndarray) -> np.ndarray:
     """Return the middle (3,) [m, world] of the skis, the board or the bicycle's wheels, on the ground."""
     names = [name for name in figure.gear if name.startswith(("ski", "board", "wheel"))]
-    return poses.position[key, [poses.body_names.index(name) for name in names]].mean(axis=0)
+    middle = poses.position[key, [poses.body_names.index(name) for name in names]].mean(axis=0)
+    return middle - figure.sizes.get("wheel_radius", 0.0) * up

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...snow import edge_lift
-from ...terrain import PlaneTerrain
-from .sampling import STEP, Moments, Run, traverse_lean
+from .sampling import STEP, Moments, Run, traverse_lean, uneven
 from .vectors import Array, columns, cross, turn_yxz, unit
 
 BEARING = 0.35
@@ -49,7 +48,7 @@ def stand_on(run: Run, distance: Array, across: Array, tilt: Array, length: floa
 def _bridged(run: Run, distance: Array, across: Array, bearing: float) -> Array:
     """Return the ground (m, k, 3, 3) that a ski of half length `bearing` [m] feels: hollows are bridged."""
     across = np.broadcast_to(across, distance.shape)
-    if run.terrain is None or isinstance(run.terrain, PlaneTerrain):
+    if not uneven(run):
         return run.ground(distance, across)
     ways = np.array([-bearing, 0.0, bearing])
     places = run.ground(distance[..., None] + ways, np.broadcast_to(across[..., None], (*across.shape, 3)))
@@ -60,12 +59,12 @@ def _bridged(run: Run, distance: Array, across: Array, bearing: float) -> Array:
     return out
 
 
-def tilt_for_curvature(run: Run, moments: Moments, factor: float) -> Array:
-    """Return the tilt (m,) [rad] of skis or board: linear in the curvature, and upright on a traverse [VP93 sec. 7].
+def tilt_for_curvature(run: Run, curvature: Array, factor: float) -> Array:
+    """Return the tilt (m,) [rad] of skis or board for their `curvature` (m,) [1/m]: linear [VP93 sec. 7].
 
     The constant is that of the whole motion, so that tilt and lean agree as well as they can, times `factor`.
     """
-    return factor * tilt_per_curvature(run) * moments.curvature
+    return factor * tilt_per_curvature(run) * curvature
 
 
 def tilt_per_curvature(run: Run) -> float:
@@ -80,6 +79,15 @@ def tilt_per_curvature(run: Run) -> float:
 def edge_angles(moments: Moments, turning: Array, outside: float) -> Array:
     """Return the tilts (m, 2) [rad] of left and right ski for a `turning` tilt (m,), the outside one's being larger."""
     size = outside * (np.sqrt(np.square(turning) + 1e-6) - 1e-3)
-    level = traverse_lean(moments.body)
-    tilts = np.stack((level + turning - size, level + turning + size), axis=1)
-    return MOST_TILT * np.tanh(tilts / MOST_TILT) if np.abs(tilts).max() > 0.6 * MOST_TILT else tilts
+    return np.stack((edge_angle(moments, turning - size), edge_angle(moments, turning + size)), axis=1)
+
+
+def edge_angle(moments: Moments, turning: Array) -> Array:
+    """Return the tilt (m,) [rad] from the ground: `turning`, and on a traverse what keeps the body upright.
+
+    Past two thirds of the most a ski can be tilted it grows more slowly.
+    """
+    tilt = traverse_lean(moments.body) + turning
+    knee = 0.67 * MOST_TILT
+    past = np.maximum(np.abs(tilt) - knee, 0.0)
+    return tilt - np.sign(tilt) * (past - (MOST_TILT - knee) * np.tanh(past / (MOST_TILT - knee)))

@@ -9,6 +9,8 @@ import numpy as np
 from ...body import Skeleton
 from .vectors import Array, columns, cross, dot, smoothstep, turn_yxz, unit
 
+Frames = dict[str, tuple[Array, Array]]
+"""Place (m, 3) [m, world] and turn (m, 3, 3) of each body by its name."""
 TRUNK = ("pelvis", "abdomen", "chest", "head")
 STRAIGHT = np.deg2rad(10.0)
 """Least bend of knees and elbows: a limb straighter than this would snap through."""
@@ -143,7 +145,7 @@ def _along(up: Array, axis: Array) -> Array:
     return columns(cross(axis, up), axis, up)
 
 
-def person_frames(skeleton: Skeleton, trunk: Trunk, arms: Limbs, legs: Limbs) -> dict[str, tuple[Array, Array]]:
+def person_frames(skeleton: Skeleton, trunk: Trunk, arms: Limbs, legs: Limbs) -> Frames:
     """Return {body: (place (m, 3), turn (m, 3, 3))} of the person's 16 bodies."""
     frames = {name: (trunk.place[:, i], trunk.turn[:, i]) for i, name in enumerate(TRUNK)}
     for limb, parts in ((arms, ("upper_arm", "forearm", "hand")), (legs, ("thigh", "shank", "foot"))):

@@ -11,12 +11,18 @@ from ...frames import quaternion_from_matrix
 from ...spec import FigureSpec, RunSpec
 from ...terrain import Terrain
 from ..motion import TurningMotion
+from .cyclist import bicycle_frames
 from .model import FigureModel
+from .person import Frames
 from .sampling import Run
-from .skiers import Frames, alpine_frames
+from .skiers import alpine_frames, telemark_frames
+from .snowboard import snowboard_frames
 
 MAPPINGS: dict[str, Callable[[FigureModel, FigureSpec, Run, np.ndarray], Frames]] = {
     "alpine": alpine_frames,
+    "snowboard": snowboard_frames,
+    "telemark": telemark_frames,
+    "bicycle": bicycle_frames,
 }
 """How each kind of figure moves."""
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...terrain import Terrain
+from ...terrain import PlaneTerrain, Terrain
 from ..motion import TurningMotion
 from .vectors import Array, columns, cross, dot, unit
 
@@ -64,6 +64,10 @@ class Run:
         s, speed, lean, rate, curvature, force, phase, smooth = np.ascontiguousarray(row[:, :8].T)
         return Moments(time, s, speed, lean, rate, curvature, force, phase, place, body, smooth)
 
+    def curvature(self, time: Array) -> Array:
+        """Return the curvature (m,) [1/m] of the support's path at `time` (m,) [s]."""
+        return np.interp(time, self.motion.time, self.motion.curvature)
+
     def path(self, distance: Array) -> tuple[Array, Array]:
         """Return place and direction (..., 3) of the support's path at `distance` (...) [m]; straight at its ends."""
         s, p, t = self._s, self._knots, self._tangents
@@ -108,6 +112,11 @@ class Run:
         i = np.clip(np.searchsorted(self._s, distance, side="right") - 1, 0, len(self._s) - 2)
         u = np.clip((distance - self._s[i]) / (self._s[i + 1] - self._s[i]), 0.0, 1.0)[..., None]
         return unit(self._normals[i] * (1.0 - u) + self._normals[i + 1] * u)
+
+
+def uneven(run: Run) -> bool:
+    """Return whether the ground is known and is no plane."""
+    return run.terrain is not None and not isinstance(run.terrain, PlaneTerrain)
 
 
 def traverse_lean(body: Array) -> Array:
