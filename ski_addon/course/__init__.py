@@ -9,6 +9,7 @@ from .finish import with_run_out
 from .gates import Gates, build_gate_track, course_gates
 from .pace import speed_to_hold
 from .path import build_path_track
+from .rhythm import build_rhythm_track
 from .track import LEFT, RIGHT, TRANSITION, Track
 from .turns import build_turn_track
 
@@ -19,6 +20,7 @@ _BUILDERS = {
     "gates": build_gate_track,
     "path": build_path_track,
     "bumps": build_bump_track,
+    "rhythm": build_rhythm_track,
 }
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from .bump_defaults import PAST_LAST, bump_crests
 from .gate_defaults import MARGIN, gate_defaults, usual_run_in
+from .rhythm_defaults import rhythm_duration
 
 if TYPE_CHECKING:
     from .run_spec import RunSpec
@@ -62,6 +63,8 @@ def estimate(spec: RunSpec) -> Estimate:
     """Return about what simulating `spec` would take, from what its course and slope ask for."""
     if spec.course.kind == "turns":
         seconds = _schuss_seconds(spec) + _turning_seconds(spec.course)
+    elif spec.course.kind == "rhythm":
+        seconds = rhythm_duration(spec.course, spec.rhythm)
     else:
         seconds = _way(spec) / _mean_speed(spec, _way(spec))
     if spec.course.finish == "stop":

@@ -41,8 +41,9 @@ line that names the file, the line in it, the key, its value and what is allowed
 run.toml line 11: course.turn_radius = 1.0 is outside 3..200 m: give a number in that range
 ```
 
-Gates, points of a path and pushes are rows: their keys stand under a header in double brackets, which is written again
-for each of them, in order, at the end of the file. Messages count them from 1 (`gate 3: radius = 1 is outside ...`).
+Times of a rhythm, gates, points of a path and pushes are rows: their keys stand under a header in double brackets,
+which is written again for each of them, in order, at the end of the file. Messages count them from 1
+(`gate 3: radius = 1 is outside ...`).
 
 ```toml
 [[push]]

@@ -1,4 +1,4 @@
-"""The rows of a run document as frozen dataclasses: `[[gate]]`, `[[point]]`, `[[push]]`, each any number of times."""
+"""The rows of a run document as frozen dataclasses: `[[rhythm]]`, `[[gate]]` and so on, each any number of times."""
 
 from __future__ import annotations
 
@@ -15,6 +15,40 @@ BODIES = (
 """Bodies of the skier that can be pushed: all but the poles."""
 DIRECTIONS = ("left", "right", "forward", "back", "up", "down")
 """Directions of a push in the frame of the track: tangent, left within the surface, surface normal."""
+
+
+@dataclass(frozen=True)
+class RhythmSpec:
+    """What a rhythm is like at one time; between rows it changes evenly. Write `[[rhythm]]` above each."""
+
+    time: float = number(0.0, 0, 3600, "s", "Time", "Time from the start of the run", required=True)
+    period: float | Literal["auto"] = number(
+        "auto",
+        0.6,
+        30,
+        "s",
+        "Swing",
+        "How long a swing lasts: a turn to the left and one to the right; auto = as the rows around it have it",
+        word="auto",
+    )
+    sharpness_deg: float | Literal["auto"] = number(
+        "auto",
+        0.5,
+        60,
+        "deg",
+        "Sharpness",
+        "How far the body leans into each turn; auto = as the rows around it have it",
+        word="auto",
+    )
+    heading_deg: float | Literal["auto"] = number(
+        "auto",
+        -80,
+        80,
+        "deg",
+        "Heading",
+        "Where the turns lead, from the fall line, to the left positive; auto = as the rows around it have it",
+        word="auto",
+    )
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from .fields import ROWS, rows, text
 from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import ground_beside
-from .rows import GateSpec, PointSpec, PushSpec
+from .rows import GateSpec, PointSpec, PushSpec, RhythmSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SCHEMA_VERSION = 1
@@ -40,6 +40,7 @@ class RunSpec:
     snow: SnowSpec = field(default_factory=SnowSpec)
     simulation: SimulationSpec = field(default_factory=SimulationSpec)
     bake: BakeSpec = field(default_factory=BakeSpec)
+    rhythm: tuple[RhythmSpec, ...] = rows(RhythmSpec, 500, "Rhythm", "What a rhythm is like, time by time")
     gate: tuple[GateSpec, ...] = rows(GateSpec, 500, "Gates", "Gates of a gate course, in the order they are passed")
     point: tuple[PointSpec, ...] = rows(PointSpec, 5000, "Points", "Corners of a drawn path, in the order they are met")
     push: tuple[PushSpec, ...] = rows(PushSpec, 100, "Pushes", "Forces from outside that the skier does not know of")

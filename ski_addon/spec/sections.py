@@ -8,6 +8,7 @@ from typing import Literal
 from .fields import choice, flag, number, text, whole
 
 _TURNS, _GATES, _BUMPS = ("turns",), ("gates",), ("bumps",)
+_RHYTHM = ("rhythm",)
 
 
 @dataclass(frozen=True)
@@ -131,13 +132,14 @@ class SlopeSpec:
 
 @dataclass(frozen=True)
 class CourseSpec:
-    """Where the skis go: linked turns, gates, a drawn path, or straight and turning lines over bumps and moguls."""
+    """Where the skis go: linked turns, gates, a drawn path, lines over bumps and moguls, or what a rhythm makes."""
 
     kind: str = choice(
         "turns",
-        ("turns", "gates", "path", "bumps"),
+        ("turns", "gates", "path", "bumps", "rhythm"),
         "Course",
-        "How the track is described: turns of one radius, gates to pass, a path of points, a line over bumps",
+        "How the track is described: turns of one radius, gates to pass, a path of points, a line over bumps, or a "
+        "rhythm of leaning from side to side",
         required=True,
     )
     turn_count: int = whole(6, 1, 500, "turns", "Turns", "Number of turns", required=True, kinds=_TURNS)
@@ -166,7 +168,7 @@ class CourseSpec:
         "glide = the run ends moving; stop = it runs out down the fall line, the skis are thrown across and it stands",
     )
     first_turn: str = choice(
-        "right", ("right", "left"), "First turn", "Side of the first turn", kinds=("turns", "gates", "bumps")
+        "right", ("right", "left"), "First turn", "Side of the first turn", kinds=("turns", "gates", "bumps", "rhythm")
     )
     half_first_turn: bool = flag(
         False,
@@ -178,8 +180,40 @@ class CourseSpec:
         "straight",
         ("straight", "turn"),
         "Entry",
-        "straight = half a transition leads in and out; turn = the run starts already in its first turn",
-        kinds=_TURNS,
+        "straight = half a transition leads in and out, or a rhythm begins out of a straight run; turn = the run "
+        "starts already in its first turn",
+        kinds=("turns", "rhythm"),
+    )
+    rhythm_duration: float | Literal["auto"] = number(
+        "auto",
+        2,
+        600,
+        "s",
+        "Rhythm duration",
+        "How long the rhythm goes on; auto = a swing past the last [[rhythm]] row, at least four swings in all",
+        word="auto",
+        kinds=_RHYTHM,
+    )
+    pace: str = choice(
+        "glide",
+        ("glide", "held"),
+        "Pace",
+        "glide = as fast as slope, snow and target speed make it; held = at the start speed whatever they do, for "
+        "instant motion of somebody who pedals or is pulled",
+        kinds=_RHYTHM,
+    )
+    tightest_radius: float = number(
+        3.5, 1, 100, "m", "Tightest radius", "No turn of a rhythm is tighter: skis and wheels cannot", kinds=_RHYTHM
+    )
+    steering_rate: float = number(
+        1.0,
+        0.05,
+        10,
+        "1/m/s",
+        "Steering rate",
+        "How fast the curvature of the track may change; skis are slow, a front wheel is quick",
+        kinds=_RHYTHM,
+        advanced=True,
     )
     gate_setting: str = choice(
         "slalom",

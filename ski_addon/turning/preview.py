@@ -7,10 +7,12 @@ it. On bumps the body keeps to the ground's smooth course, as in the plan, and i
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..course import Track, build_track
+from ..errors import SkiAddonError
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..planning import as_planned
 from ..planning.line import body_normals
@@ -21,6 +23,8 @@ from ..spec import RunSpec
 from ..terrain import PlaneTerrain, Terrain, build_terrain
 from .body import TurningBody
 from .motion import TurningMotion
+from .person import body_of
+from .rhythm import RhythmRun, run_rhythm
 from .trace import motion_on_ground
 from .way import Leaning, Way
 
@@ -28,24 +32,50 @@ TIME_STEP = 0.01
 """Time between neighbouring moments of a preview [s], about: a whole number of them makes the run."""
 RIDE_STEP = 0.02
 """Step [s] in which a preview's speed is integrated."""
-CENTRE_HEIGHT = 0.49
-"""Height of a skier's centre of mass over the snow for each metre of body height, on boots and bent knees."""
+LEAST_MOMENTS = 20
+"""A rhythm that cannot be kept for so many moments has no preview."""
 
 
 def preview_motion(spec: RunSpec) -> TurningMotion:
     """Return the motion of the leaning body on the whole run of `spec`, whatever its course and ground.
 
-    Raises `SpecError` or `PlanInfeasible` for a course without a track. Where friction stops a skier on the way, the
-    motion ends.
+    Raises `SpecError` or `PlanInfeasible` for a course without a track. Where friction stops a skier on the way, or a
+    rhythm cannot go on, the motion ends; see `preview_course`.
+    """
+    return preview_course(spec).motion
+
+
+@dataclass(frozen=True)
+class Preview:
+    """The `motion` of a run, and the `problem` that ends it early, or None."""
+
+    motion: TurningMotion
+    problem: SkiAddonError | None
+
+
+def preview_course(spec: RunSpec) -> Preview:
+    """Return the preview of a run; a rhythm that cannot be kept to its end is there up to that place, with the problem.
+
+    Raises what `preview_motion` raises.
     """
     terrain = build_terrain(spec.slope)
     believed = as_planned(spec)
-    return preview_track(believed, build_track(believed, terrain), terrain)
+    level, stops = isinstance(terrain, PlaneTerrain), spec.course.finish == "stop"
+    if spec.course.kind == "rhythm":
+        made = run_rhythm(believed, terrain.mean_angle)
+        if made.last < LEAST_MOMENTS and made.problem is not None:
+            raise made.problem
+        if made.problem is not None or (level and not stops):
+            return Preview(_of_rhythm(made, terrain), made.problem)
+    return Preview(preview_track(believed, build_track(believed, terrain), terrain), None)
 
 
-def body_of(spec: RunSpec) -> TurningBody:
-    """Return the turning body of a run's person: all mass at the height of a skier's centre of mass."""
-    return TurningBody(leg_length=CENTRE_HEIGHT * spec.skier.height)
+def _of_rhythm(made: RhythmRun, terrain: Terrain) -> TurningMotion:
+    """Return the swings themselves as motion: on a plane they need no second look."""
+    run, kept = made.run, slice(0, made.last + 1)
+    place = np.stack((run.down[kept, 0] * np.cos(terrain.mean_angle), run.left[kept, 0]), axis=1)
+    values = (values[kept, 0] for values in (run.lean, run.lean_rate, run.curvature, run.speed, run.phase))
+    return motion_on_ground(made.body, terrain, run.time[kept], place, *values)
 
 
 def preview_track(spec: RunSpec, track: Track, terrain: Terrain) -> TurningMotion:

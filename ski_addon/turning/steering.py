@@ -90,15 +90,18 @@ class Steered:
 
 @dataclass(frozen=True)
 class HalfSwing:
-    """Half swings that began at moment `index` for the bodies `body` (k,): `speed` [m/s] then, `turn` [rad] that was
-    asked of them, positive to their own `side` (k,), `beta` (k,) they got, and by how much they will miss the direction
-    asked for because beta has limits, `missed` (k,) [rad].
+    """Half swings that began at moment `index` for the bodies `body` (k,): the `speed` [m/s] they were counted with, the
+    `frequency` [rad/s] and `sharpness` [rad] asked for, the `turn` [rad] that was asked of them, positive to their own
+    `side` (k,), the `beta` (k,) they got, and by how much they will miss the direction asked for because beta has
+    limits, `missed` (k,) [rad].
     """
 
     index: int
     body: np.ndarray
     side: np.ndarray
     speed: np.ndarray
+    frequency: np.ndarray
+    sharpness: np.ndarray
     turn: np.ndarray
     beta: np.ndarray
     missed: np.ndarray
@@ -298,7 +301,7 @@ class _Steering:
         rate = np.maximum(np.abs(rate), self.bounds.origin * frequency * sharpness)
         limits = (LEAST_BETA, np.minimum(MOST_BETA, np.maximum(SHARPEST / sharpness, 1.0)))
         beta, missed = turn_modifier(bodies, turn, sharpness, frequency, speed, rate, drift, normal, limits)
-        state.turns.append(HalfSwing(index, which, side, speed, turn, beta, missed))
+        state.turns.append(HalfSwing(index, which, side, speed, frequency, sharpness, turn, beta, missed))
         for name, value in (("beta", beta), ("frequency", frequency / beta), ("sharpness", sharpness * beta)):
             if self.single:
                 setattr(state, name, float(value[0]))
