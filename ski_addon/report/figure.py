@@ -14,6 +14,7 @@ from .. import atomic
 from ..errors import RecordingError
 from ..simulation import recorded_gates
 from ..spec import RunSpec
+from ..spec.rhythm_defaults import rhythm_duration
 from . import gate_panels, panels
 from .style import INK, QUIET, RC
 
@@ -110,6 +111,8 @@ def _course_words(spec: RunSpec) -> str:
         return f"{len(spec.gate) if course.gate_setting == 'list' else course.gate_count} {setting}"
     if course.kind == "path":
         return f"a drawn path of {len(spec.point)} points"
+    if course.kind == "rhythm":
+        return f"a rhythm of {len(spec.rhythm)} rows, {rhythm_duration(course, spec.rhythm):g} s"
     if course.kind == "bumps":
         way = f"turning {course.turn_amplitude:g} m beside the crests" if course.turn_amplitude else "straight"
         return f"over {spec.slope.kind}, {way}"

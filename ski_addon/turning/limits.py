@@ -62,7 +62,8 @@ def _beyond_bounds(body: TurningBody, pace: Pace, turn: HalfSwing) -> Verdict | 
         )
     elif change > NEAR * quickest:
         works = _less(lambda share: peak_curvature(body, pace, w, share * a, speed) * w <= quickest)
-        reason = f"{asked} needs the curvature to change by {change:.2f} 1/m/s, more than course.steering_rate = {quickest:g}"
+        bound = f"more than course.steering_rate = {quickest:g}"
+        reason = f"{asked} needs the curvature to change by {change:.2f} 1/m/s, {bound}"
     else:
         return None
     lean = math.floor(math.degrees(works * a) * 10.0) / 10.0

@@ -90,9 +90,9 @@ class Steered:
 
 @dataclass(frozen=True)
 class HalfSwing:
-    """Half swings that began at moment `index` for the bodies `body` (k,): the `speed` [m/s] they were counted with, the
-    `frequency` [rad/s] and `sharpness` [rad] asked for, the `turn` [rad] that was asked of them, positive to their own
-    `side` (k,), the `beta` (k,) they got, and by how much they will miss the direction asked for because beta has
+    """Half swings that began at moment `index` for the bodies `body` (k,): the `speed` [m/s] they were counted with,
+    the `frequency` [rad/s] and `sharpness` [rad] asked for, the `turn` [rad] that was asked of them, positive to their
+    own `side` (k,), the `beta` (k,) they got, and by how much they will miss the direction asked for because beta has
     limits, `missed` (k,) [rad].
     """
 
