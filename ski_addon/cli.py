@@ -220,6 +220,19 @@ def _add_render(subparsers: _Subparsers) -> None:
     parser.add_argument("--stop", action="store_true", help="show the end of the run, where the skier stops")
 
 
+def _add_preview(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "preview",
+        "animate the figure of a run at once, without simulating it",
+        "The figure of any kind (skier, snowboarder, telemark skier, cyclist) as keyframes in preview.blend, or, for\n"
+        "FILE.png, in one picture at several instants. Needs Blender's Python module bpy.",
+    )
+    _add_spec(parser)
+    _add_output(parser, "DIR|FILE.blend|FILE.png", "file to write (preview.blend in a folder)", required=True)
+    _add_talk(parser)
+
+
 def _add_validate(subparsers: _Subparsers) -> None:
     parser = _command(subparsers, "validate", "check run documents without running them")
     parser.add_argument("specs", metavar="SPEC", nargs="+", help="run documents (.toml) or names of presets")
@@ -278,7 +291,7 @@ def _add_demo(subparsers: _Subparsers) -> None:
 
 
 COMMANDS = (
-    *(_add_run, _add_plan, _add_simulate, _add_bake, _add_report, _add_render, _add_validate),
+    *(_add_run, _add_plan, _add_preview, _add_simulate, _add_bake, _add_report, _add_render, _add_validate),
     *(_add_robustness, _add_gallery, _add_demo),
 )
 """What adds each command to the parser, in the order of the help."""

@@ -88,6 +88,21 @@ def render_command(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def preview_command(arguments: argparse.Namespace) -> int:
+    """`preview`: run -> .blend or picture of the instant figure, without physics."""
+    talk = _talk(arguments)
+    target = Path(arguments.output)
+    if target.suffix not in (".blend", ".png") or target.is_dir():
+        target = target / "preview.blend"
+    results.check_blender("the preview")
+    spec = _read_spec(arguments.spec, arguments)
+    with atomic.output_folder(target.parent):
+        results.preview(spec, target)
+    talk.say(f"wrote {target}")
+    talk.give({target.suffix[1:].replace("png", "picture"): str(target), "spec_hash": spec.content_hash()})
+    return 0
+
+
 def validate_command(arguments: argparse.Namespace) -> int:
     """`validate`: check run documents; one line for each. Returns the exit code of the first bad one."""
     talk, found, exit_code = _talk(arguments), [], 0

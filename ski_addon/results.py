@@ -27,6 +27,7 @@ from .talk import Talk, json_text
 if TYPE_CHECKING:
     from .robustness import PushTable
     from .simulation import Recording
+    from .turning.motion import TurningMotion
 
 Progress = Callable[[float, str], Any]
 
@@ -195,6 +196,34 @@ def render_strobe(recording: Recording, spec: RunSpec, target: Path, *, stop: bo
         from .blender.strobe import render_strobe as render
 
         render(recording, spec, target, stop=stop)
+
+
+def preview(spec: RunSpec, target: Path) -> None:
+    """Write the instant figure of a run: a .blend, or (by the target's suffix) one picture; in a process of its own.
+
+    What is wrong with the run is found out here, before Blender is started.
+    """
+    from .turning.preview import preview_motion
+
+    motion = preview_motion(spec)
+    if target.suffix == ".blend" or apart.inside_blender() or apart.is_apart():
+        draw_preview(spec, motion, target)
+        return
+    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
+        document = Path(temporary, "spec.toml")
+        document.write_text(spec.to_toml(), encoding="utf-8")
+        output = Path(temporary, "picture") / target.name
+        output.parent.mkdir()
+        apart.run_apart(["preview", str(document.resolve()), "--output", str(output.resolve())])
+        atomic.move_all(output.parent, target.parent)
+
+
+def draw_preview(spec: RunSpec, motion: TurningMotion, target: Path) -> None:
+    """Write the figure of `spec` in `motion` into a .blend or a picture."""
+    with apart.silenced():
+        from .blender.figures import preview_file, preview_picture
+
+        (preview_file if target.suffix == ".blend" else preview_picture)(spec, motion, target)
 
 
 def run_blender_command(name: str, recording_path: Path, target: Path, **options: bool) -> None:

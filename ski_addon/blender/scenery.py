@@ -17,30 +17,56 @@ TREE_SPACING = 7.0
 BRANCH = 2.5
 """How far branches reach [m]."""
 MOUNTAIN_DISTANCE = 1900.0
+_TREE_PAINTS = {
+    "trunk": ("3d2c20", 0.9),
+    "fir": ("203a2e", 0.8),
+    "snow": ("dfe8ef", 0.6),
+    "light": ("2f5a3a", 0.8),
+}
+"""sRGB colour and roughness of what firs are made of."""
 
 
 def build_trees(
-    terrain: Terrain, track: Array, collection: bpy.types.Collection, seed: int = 3, clear: Array | None = None
+    terrain: Terrain,
+    track: Array,
+    collection: bpy.types.Collection,
+    seed: int = 3,
+    clear: Array | None = None,
+    *,
+    snow: bool = True,
 ) -> bpy.types.Object:
     """Return one object with all fir trees on both sides of `track` (n, 3) [m, world], easy to hide or delete.
 
     `clear` (k, 2) [m, world] is a convex outline, counter-clockwise seen from above, in which none may stand.
+    Without `snow` the branches are green.
     """
+    return build_firs("Firs", _tree_places(track, seed, clear), terrain, collection, snow=snow)
+
+
+def build_firs(
+    name: str,
+    places: list[tuple[float, float, float, float]],
+    terrain: Terrain,
+    collection: bpy.types.Collection,
+    *,
+    snow: bool = True,
+) -> bpy.types.Object:
+    """Return one object with a fir at each of `places` (x, y [m, world], size, turn [rad]) on `terrain`."""
     fir = _fir()
     vertices: list[Array] = []
     faces: list[tuple[int, ...]] = []
     materials: list[str] = []
-    for x, y, size, turn in _tree_places(track, seed, clear):
+    for x, y, size, turn in places:
         c, s = size * np.cos(turn), size * np.sin(turn)
         foot = (x, y, float(terrain.height(x, y)) - 0.2)
         first = len(vertices) * len(fir.vertices)
         vertices.append(fir.vertices @ np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, size))) + foot)
         faces += [tuple(first + corner for corner in face) for face in fir.faces]
         materials += fir.materials
-    trees = mesh_object("Firs", np.concatenate(vertices or [np.zeros((0, 3))]), faces, collection)
+    trees = mesh_object(name, np.concatenate(vertices or [np.zeros((0, 3))]), faces, collection)
     names = ("trunk", "fir", "snow")
-    for name in names:
-        trees.data.materials.append(_tree_material(name))
+    for paint in names:
+        trees.data.materials.append(_tree_material(paint if snow or paint != "snow" else "light"))
     trees.data.polygons.foreach_set("material_index", np.array([names.index(m) for m in materials], dtype=np.int32))
     trees.data.polygons.foreach_set("use_smooth", np.zeros(len(faces), dtype=bool))
     return trees
@@ -90,7 +116,7 @@ def _fir() -> Part:
 
 
 def _tree_material(name: str) -> bpy.types.Material:
-    colour, roughness = {"trunk": ("3d2c20", 0.9), "fir": ("203a2e", 0.8), "snow": ("dfe8ef", 0.6)}[name]
+    colour, roughness = _TREE_PAINTS[name]
     return _plain_material(f"Ski tree {name}", colour, roughness)
 
 

@@ -80,7 +80,7 @@ def stage_ride(
     gates = build_gates(spec, terrain, add_collection(scene, "Gates")) if spec.course.kind == "gates" else []
     scenery = add_collection(scene, "Scenery")
     if trees:
-        build_trees(terrain, track, scenery)
+        build_trees(terrain, track, scenery, snow=ride.on_snow)
     build_mountains(track.mean(axis=0), scenery)
     build_sun(add_collection(scene, "Light"), *sun_deg)
     build_sky(scene)

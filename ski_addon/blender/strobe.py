@@ -85,9 +85,8 @@ def render_ride(
     look = {"lens": view.lens, "fill": FILL, "lift": view.lift}
     camera = build_framing_camera(seen, direction, scene, add_collection(scene, "Camera"), **look)
     outline = _outline(np.array(camera.matrix_world.translation), seen)
-    build_trees(
-        stage.terrain, np.asarray(ride.timeline.track_position), scene.collection.children["Scenery"], clear=outline
-    )
+    track, scenery = np.asarray(ride.timeline.track_position), scene.collection.children["Scenery"]
+    build_trees(stage.terrain, track, scenery, clear=outline, snow=ride.on_snow)
     render_to(scene, target)
     return Path(target)
 

@@ -20,6 +20,8 @@ SHORT_TURNS_SHOWN = 3.0
 """Turns round moguls and slalom gates follow each other closely."""
 WAVES_SHOWN = 1.1
 """Waves of bumps a picture shows, from trough to crest and on."""
+FOLLOWED = 45.0
+"""Length of a followed path that is shown [m]."""
 STOP_SHOWN = 3.0
 """The last seconds of a stop that are shown [s]."""
 STANDING = 0.25
@@ -59,6 +61,9 @@ def choose_view(timeline: Timeline, spec: RunSpec, instants: int, *, stop: bool 
     if course.kind == "bumps":
         times = turn_times(timeline, instants, SHORT_TURNS_SHOWN)
         return View(times, 28.0, 17.0, sun_deg=95.0, sun_height_deg=14.0, lens=45.0, headroom=1.0)
+    if course.kind == "follow":  # from above, over what is gone round
+        times = middle_times(timeline, instants, FOLLOWED)
+        return View(times, 24.0, 27.0, sun_deg=100.0, sun_height_deg=32.0, lens=40.0, headroom=1.5)
     if course.kind == "gates":
         turns = TURNS_SHOWN if course.gate_setting == "giant_slalom" else SHORT_TURNS_SHOWN
         times = turn_times(timeline, instants, turns, from_apex=False)  # gates are seen between skiers

@@ -190,14 +190,14 @@ def _crank(points: Points, figure: Figure) -> Part:
 
 
 def _pedal() -> Part:
-    """Return a flat pedal about its axle."""
-    width = PEDAL_WIDTH
-    parts = [spindle([(0.010, -0.5 * width - 0.004), (0.011, 0.5 * width)], "bicycle_metal", 10)]
+    """Return a flat pedal that hangs on its axle: the sole stands at the axle's own height."""
+    width, low = PEDAL_WIDTH, -0.0115
+    parts = [spindle([(0.007, -0.5 * width - 0.004), (0.009, 0.5 * width)], "bicycle_metal", 10)]
     for y in (-0.46, 0.46):
         parts.append(box((0.094, 0.010, 0.020), "bicycle_parts", 0.3).moved((0.0, y * width, 0.0)))
     for x in (-0.042, 0.042):
         parts.append(box((0.012, width, 0.022), "bicycle_parts", 0.3).moved((x, 0.0, 0.0)))
-    return join(parts)
+    return join(parts).moved((0.0, 0.0, low))
 
 
 def bicycle_points(figure: Figure) -> Points:

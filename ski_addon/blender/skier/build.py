@@ -11,7 +11,7 @@ from .boots import boots
 from .clothes import jacket, trousers
 from .cycling_helmet import cyclist_head
 from .figure import ALPINE_GEAR, Figure, build_figure
-from .hands import gloves, mittens
+from .hands import gloves, mittens, thin_gloves
 from .head import head
 from .jersey import jersey, shorts
 from .paints import dressed_for
@@ -31,7 +31,7 @@ WARDROBE = {
     "alpine": (trousers, boots, jacket, gloves, head),
     "snowboard": (trousers, soft_boots, jacket, mittens, head),
     "telemark": (trousers, telemark_boots, jacket, gloves, head),
-    "bicycle": (shorts, shoes, jersey, gloves, cyclist_head),
+    "bicycle": (shorts, shoes, jersey, thin_gloves, cyclist_head),
 }
 """What the figures of each kind wear, from the inside out."""
 

@@ -38,6 +38,8 @@ _TRUNK = (
     (0.325, 0.037, 0.039, 0.034),
 )
 _HEM_ROWS, _YOKE_ROW, _ACCENT_ROW = 4, 12, 11
+LOOSE = {"snowboard": 0.09}
+"""By kind of figure, how much wider than a ski jacket theirs is at the hips."""
 _ZIP_WIDTH = 0.05
 """Half width of the zip, as an angle round the trunk [rad]."""
 
@@ -104,7 +106,8 @@ def trousers(figure: Figure) -> Part:
 def _trunk(figure: Figure) -> Part:
     h, girth = figure.h, figure.girth
     base = figure.z("pelvis")
-    widths = [1.0 if z > 0.30 else girth for z, *_ in _TRUNK]
+    loose = LOOSE.get(figure.kind, 0.0)  # at the hem, none at the chest
+    widths = [1.0 if z > 0.30 else girth * (1.0 + loose * np.clip(1.0 - z / 0.15, 0.0, 1.0)) for z, *_ in _TRUNK]
     rings = [
         Ring(base + z * h, side * h * g, front * h * g, back * h * g, power=2.5 if z < 0.29 else 2.1)
         for (z, side, front, back), g in zip(_TRUNK, widths, strict=True)
@@ -221,9 +224,10 @@ def _leg_material(row: int, column: int) -> str:
     return "trousers_stripe" if column == 4 and row >= 4 else "trousers"
 
 
-def seat(figure: Figure) -> Part:
-    """Return the seat of the trousers."""
+def seat(figure: Figure, top: float = 1.0) -> Part:
+    """Return the seat of the trousers, up to `top` [statures over the pelvis] at most."""
     h, girth = figure.h, figure.girth
     base = figure.z("pelvis")
-    rings = [Ring(base + z * h, s * h * girth, f * h * girth, b * h * girth, power=2.3) for z, s, f, b in _PELVIS]
+    rows = [row for row in _PELVIS if row[0] <= top]
+    rings = [Ring(base + z * h, s * h * girth, f * h * girth, b * h * girth, power=2.3) for z, s, f, b in rows]
     return stack(rings, TRUNK_POINTS, "trousers").bound("pelvis")

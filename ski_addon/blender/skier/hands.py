@@ -22,19 +22,36 @@ _FIST = (
     (-0.72, 0.165, 0.280, 0.245, 0.05),
     (-0.76, 0.080, 0.160, 0.140, 0.05),
 )
+_THIN_FIST = (
+    (0.02, 0.185, 0.200, 0.200, 0.00),
+    (0.03, 0.210, 0.226, 0.226, 0.00),
+    (-0.03, 0.205, 0.222, 0.222, 0.00),
+    (-0.05, 0.190, 0.210, 0.210, 0.00),
+    *_FIST[4:],
+)
 
 
 def gloves(figure: Figure) -> Part:
     """Return both gloves, bound to the hands."""
-    left = _glove(figure).moved(figure.place["hand.L"]).bound("hand.L")
+    return _both(_glove(figure.skeleton.lengths["hand"]), figure)
+
+
+def thin_gloves(figure: Figure) -> Part:
+    """Return both gloves of a cyclist: closed as a skier's, but thin and with a short cuff, bound to the hands."""
+    size = figure.skeleton.lengths["hand"]
+    hand = _glove(size, _THIN_FIST)
+    return _both(replace(hand, vertices=hand.vertices * (0.80, 0.80, 0.97)), figure)
+
+
+def _both(left: Part, figure: Figure) -> Part:
+    left = left.moved(figure.place["hand.L"]).bound("hand.L")
     return join([left, left.mirrored()])
 
 
-def _glove(figure: Figure) -> Part:
-    size = figure.skeleton.lengths["hand"]
+def _glove(size: float, rows: tuple[tuple[float, ...], ...] = _FIST) -> Part:
     rings = [
         Ring(z * size, side * size, front * size, back * size, y=-inward * size, power=2.6)
-        for z, side, front, back, inward in _FIST
+        for z, side, front, back, inward in rows
     ]
     fist = stack(rings, 14, lambda row, _column: "gloves_cuff" if row < 3 else "gloves")
     return join([fist, _thumb(size), *_knuckles(size)])
@@ -90,6 +107,4 @@ def mittens(figure: Figure) -> Part:
     rows = [ring.scaled(0.8, 0.02 * size), ring.scaled(1.1, -0.16 * size), ring.scaled(1.0, -0.32 * size)]
     thumb = stack([*rows, *dome(rows[-1], -0.08 * size, 3)], 8, "gloves")
     tilt = rotation_about("x", -0.35) @ rotation_about("y", -0.40)
-    left = join([hand, thumb.turned(tilt).moved((0.20 * size, -0.04 * size, -0.24 * size))])
-    left = left.moved(figure.place["hand.L"]).bound("hand.L")
-    return join([left, left.mirrored()])
+    return _both(join([hand, thumb.turned(tilt).moved((0.20 * size, -0.04 * size, -0.24 * size))]), figure)

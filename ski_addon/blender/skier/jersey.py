@@ -8,12 +8,12 @@ from .shapes import Part, Ring, chain_weights, dome, join, stack
 
 # height above the pelvis, half width, depth in front and behind: closer than a jacket, longer behind
 _TRUNK = (
-    (-0.052, 0.090, 0.064, 0.071),
-    (-0.062, 0.097, 0.071, 0.079),
-    (-0.056, 0.098, 0.072, 0.080),
-    (-0.030, 0.097, 0.070, 0.079),
-    (0.010, 0.090, 0.064, 0.069),
-    (0.055, 0.081, 0.059, 0.060),
+    (-0.052, 0.090, 0.066, 0.071),
+    (-0.062, 0.097, 0.074, 0.079),
+    (-0.056, 0.098, 0.075, 0.080),
+    (-0.030, 0.098, 0.076, 0.080),
+    (0.010, 0.092, 0.071, 0.071),
+    (0.055, 0.082, 0.062, 0.061),
     (0.090, 0.080, 0.060, 0.060),
     (0.130, 0.086, 0.064, 0.063),
     (0.175, 0.093, 0.068, 0.067),
@@ -81,7 +81,7 @@ def jersey(figure: Figure) -> Part:
 def shorts(figure: Figure) -> Part:
     """Return the seat, both legs of the shorts, and below them knees, calves and socks."""
     leg = _leg(figure)
-    return join([seat(figure), leg, leg.mirrored()])
+    return join([seat(figure, 0.0), leg, leg.mirrored()])
 
 
 def _trunk(figure: Figure) -> Part:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...frames import Array
 from .boots import arch
 from .figure import Figure
 from .shapes import Part, join, loft
@@ -30,6 +31,11 @@ _SOLE_THICKNESS = 0.012
 def shoe_length(figure: Figure) -> float:
     """Return the length [m] that a shoe's places are shares of."""
     return 0.152 * figure.h + 0.028
+
+
+def ball_of(figure: Figure, side: str) -> Array:
+    """Return the place (3,) [m] on the sole below the foot's ball, in the frame of the foot on that `side`."""
+    return np.array([figure.sizes["ball_forward"], 0.0, figure.sole - figure.z(f"foot.{side}")])
 
 
 def shoes(figure: Figure) -> Part:

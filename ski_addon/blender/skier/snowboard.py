@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ...frames import Array, rotation_about
+from .boots import arch
 from .figure import SOLE_ABOVE_SKI_BASE, Figure
 from .shapes import Part, box, join, loft
-from .soft_boots import boot_half_width, boot_length
+from .soft_boots import boot_half_width, boot_length, shell_size
 from .tubes import spindle
 
 TIP_SHARE, TIP_RISE, THICKNESS = 0.135, 0.050, 0.0095
@@ -82,7 +83,7 @@ def _binding(figure: Figure) -> Part:
         plate.moved((middle, 0.0, 0.5 * (sole + THICKNESS))),
         disc.moved((middle, 0.0, THICKNESS + 0.002)),
         _highback(figure, half).moved((-setback, 0.0, sole)),
-        *(_strap(figure, *place).moved((-setback, 0.0, sole)) for place in ((0.10, 0.075, 0.9), (0.47, 0.050, 1.0))),
+        *(_strap(figure, *place).moved((-setback, 0.0, sole)) for place in ((0.17, 0.21), (0.47, 0.15))),
     ]
     for side in (1.0, -1.0):
         heel_cup = box((0.40 * boot, 0.008, 0.045), "bindings", 0.3)
@@ -104,16 +105,12 @@ def _highback(figure: Figure, half: float) -> Part:
     return loft(np.stack(rows), "bindings")
 
 
-def _strap(figure: Figure, at: float, width: float, reach: float) -> Part:
-    """Return a strap over the boot, `at` a share of its length in front of the ankle; `width` [m] along the foot."""
-    boot, half = boot_length(figure), boot_half_width(figure)
-    top = (0.052 if at < 0.3 else 0.031) * figure.h * reach + 0.012
-    angle = np.linspace(0.0, np.pi, 11)
+def _strap(figure: Figure, at: float, width: float) -> Part:
+    """Return a strap over the boot, `at` a share of its length in front of the ankle; `width` is such a share, too."""
+    length = boot_length(figure)
     rows = []
-    for shift, grow in ((-0.5, 1.02), (-0.42, 1.10), (0.42, 1.10), (0.5, 1.02)):
-        rise = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.75
-        x = np.full(11, at * boot + shift * width) + (0.035 * rise if at < 0.3 else 0.0)
-        rows.append(np.column_stack((x, 1.04 * grow * half * np.cos(angle), grow * top * rise - 0.004)))
-    under = [np.column_stack((row[:, 0], 0.9 * row[:, 1], 0.9 * row[:, 2] - 0.004)) for row in rows]
-    rings = [np.concatenate((row, low[::-1])) for row, low in zip(rows, under, strict=True)]
-    return loft(np.stack(rings), lambda row, _column: "bindings_accent" if row == 1 else "bindings")
+    for shift, grow in ((-0.5, 1.0), (-0.42, 1.07), (0.42, 1.07), (0.5, 1.0)):
+        share = at + shift * width
+        half, top = shell_size(figure, share)
+        rows.append(arch(share * length, grow * half, -0.004, grow * top))
+    return loft(np.stack(rows), lambda row, _column: "bindings_accent" if row == 1 else "bindings", (False, False))

@@ -47,6 +47,14 @@ def boot_half_width(figure: Figure) -> float:
     return 0.0300 * figure.h + 0.007
 
 
+def shell_size(figure: Figure, share: float) -> tuple[float, float]:
+    """Return half width and height over the sole [m] of the shell at a `share` of its length before the ankle."""
+    place, width, top = (np.array(column) for column in zip(*_SHELL, strict=True))
+    low, floor = figure.sole - figure.z("foot.L"), _floor(figure)
+    high = floor + float(np.interp(share, place, top)) * (0.030 * figure.h - floor)
+    return float(np.interp(share, place, width)) * boot_half_width(figure), high - low
+
+
 def soft_boots(figure: Figure) -> Part:
     """Return both boots."""
     left = _boot(figure)
