@@ -15,7 +15,10 @@ from ski_addon.simulation.recording import array_names
 from ski_addon.spec import RunSpec, estimate, list_presets
 from tests.ski_runs import planned, preset
 
-RUNS = tuple(preset.identifier for preset in list_presets("runs"))
+RUNS = tuple(
+    preset.identifier for preset in list_presets("runs") if RunSpec.from_toml(preset.path).figure.kind == "alpine"
+)
+"""Runs with the whole physics; other figures are for the preview."""
 LIVELY = ("giant_slalom", "medium_carving", "short_turns")
 SHORT = {"course.turn_count": 1, "course.turn_duration": 0.3, "course.transition_duration": 0.4}
 """A run of 0.3 s: the simulation starts within its only turn."""

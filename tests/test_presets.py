@@ -5,13 +5,20 @@ from __future__ import annotations
 import dataclasses
 import tomllib
 
+import numpy as np
 import pytest
 
-from ski_addon.errors import MissingInputError
+from ski_addon.errors import MissingInputError, SpecError
+from ski_addon.pipeline import make_plan
 from ski_addon.results import simulate_run
 from ski_addon.spec import PART_KINDS, PRESET_KINDS, SECTIONS, RunSpec, estimate, find_document, list_presets
+from ski_addon.spec.figure_section import KINDS as FIGURE_KINDS
+from ski_addon.turning.figures import build_figure, figure_poses
+from ski_addon.turning.preview import preview_motion
 
 RUNS = list_presets("runs")
+PHYSICAL = [preset for preset in RUNS if RunSpec.from_toml(preset.path).figure.kind == "alpine"]
+"""Runs with the whole physics; the others are for the preview."""
 PARTS = [preset for kind in PART_KINDS for preset in list_presets(kind)]
 SECTION_OF = {"skiers": "skier", "snow": "snow", "styles": "technique"}
 PAPER = ("paper_main", "paper_r10", "paper_r25", "paper_fig15")
@@ -120,8 +127,30 @@ def test_presets_of_another_folder_can_be_listed(tmp_path):
     assert set(SECTION_OF.values()) <= set(SECTIONS)
 
 
-@pytest.mark.slow
+def test_each_figure_has_a_run():
+    assert {RunSpec.from_toml(preset.path).figure.kind for preset in RUNS} == set(FIGURE_KINDS)
+
+
 @pytest.mark.parametrize("preset", RUNS, ids=identifiers(RUNS))
+def test_every_run_can_be_previewed_to_its_end(preset):
+    spec = RunSpec.from_toml(preset.path)
+    motion = preview_motion(spec)
+    assert motion.duration > 5.0
+    if spec.course.finish == "glide":
+        assert motion.speed.min() > 1.5
+    figure = build_figure(spec)
+    poses = figure_poses(figure, spec, motion, 4.0)
+    assert poses.body_names == figure.body_names and np.all(np.isfinite(poses.position))
+
+
+@pytest.mark.parametrize("preset", [p for p in RUNS if p not in PHYSICAL], ids=lambda preset: preset.identifier)
+def test_runs_for_the_preview_say_so(preset):
+    with pytest.raises(SpecError, match=r"figure\.kind.*preview"):
+        make_plan(RunSpec.from_toml(preset.path))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", PHYSICAL, ids=identifiers(PHYSICAL))
 def test_run_is_skied_to_its_end_within_twice_the_bounds_of_the_papers_cases(preset):
     spec = RunSpec.from_toml(preset.path)
     _, summary = simulate_run(spec, lambda fraction, text: True)
