@@ -62,14 +62,11 @@ def test_claim_15_wheels_roll_and_do_not_slip(ground):
         assert away.max() < (2e-3 if ground == "plane" else 0.03), name
 
 
-def test_pedals_stay_level_and_cranks_turn_by_the_way():
-    model, poses, _, motion = ridden("bicycle", fps=120.0)
-    level = np.einsum("mji,mjk->mik", turn(poses, "frame"), turn(poses, "pedal.L"))
-    np.testing.assert_allclose(level, np.broadcast_to(np.eye(3), level.shape), atol=1e-9)
-    crank = np.einsum("mji,mjk->mik", turn(poses, "frame"), turn(poses, "crank"))
-    angle = np.unwrap(np.arctan2(crank[:, 0, 2], crank[:, 0, 0]))
-    way = motion.distance[-1] - motion.distance[0]
-    assert 0.5 * way < (angle[-1] - angle[0]) / (2.0 * np.pi) * RunSpec().figure.development < 1.05 * way
+def test_pedals_stay_level():
+    _, poses, _, _ = ridden("bicycle", fps=120.0)
+    for side in "LR":
+        level = np.einsum("mji,mjk->mik", turn(poses, "frame"), turn(poses, f"pedal.{side}"))
+        np.testing.assert_allclose(level, np.broadcast_to(np.eye(3), level.shape), atol=1e-9)
 
 
 @pytest.mark.parametrize("ground", GROUNDS)
