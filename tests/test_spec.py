@@ -9,7 +9,7 @@ import pytest
 
 from ski_addon.errors import MissingInputError, SpecError
 from ski_addon.spec import SECTIONS, CourseSpec, RunSpec, field_table, find_field, row_kinds
-from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, ROWS, TEXT, WHOLE
+from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, PLACES, ROWS, TEXT, WHOLE
 
 SHORTEST = """\
 [slope]
@@ -49,7 +49,7 @@ def test_every_leaf_is_in_the_table_with_a_doc_a_label_and_bounds_its_default_ke
     assert set(field_table()) == leaves
     for info in (*field_table().values(), *(leaf for rows in row_kinds().values() for leaf in rows.row_fields)):
         assert info.doc and info.label, info.key
-        assert info.kind in (NUMBER, WHOLE, FLAG, CHOICE, TEXT, ROWS)
+        assert info.kind in (NUMBER, WHOLE, FLAG, CHOICE, TEXT, PLACES, ROWS)
         if info.kind in (NUMBER, WHOLE) and info.default != info.word:
             assert info.low <= info.default <= info.high, info.key
         if info.kind == CHOICE:

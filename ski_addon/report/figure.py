@@ -111,6 +111,8 @@ def _course_words(spec: RunSpec) -> str:
         return f"{len(spec.gate) if course.gate_setting == 'list' else course.gate_count} {setting}"
     if course.kind == "path":
         return f"a drawn path of {len(spec.point)} points"
+    if course.kind == "follow":
+        return f"a path of {len(spec.point)} points past {len(spec.obstacle)} obstacles"
     if course.kind == "rhythm":
         return f"a rhythm of {len(spec.rhythm)} rows, {rhythm_duration(course, spec.rhythm):g} s"
     if course.kind == "bumps":

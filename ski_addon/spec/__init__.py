@@ -10,7 +10,7 @@ from .fields import FieldInfo
 from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
-from .rows import GateSpec, PointSpec, PushSpec, RhythmSpec
+from .rows import GateSpec, ObstacleSpec, PointSpec, PushSpec, RhythmSpec
 from .run_spec import SCHEMA_VERSION, RunSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 from .table import SECTIONS, field_table, find_field, row_kinds, section_fields
@@ -26,6 +26,7 @@ __all__ = [
     "FieldInfo",
     "FigureSpec",
     "GateSpec",
+    "ObstacleSpec",
     "PointSpec",
     "Preset",
     "PushSpec",

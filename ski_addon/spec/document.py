@@ -122,9 +122,11 @@ def _toml_lines(values: Mapping[str, Any]) -> list[str]:
     return [f"{key} = {_toml_value(value)}" for key, value in values.items()]
 
 
-def _toml_value(value: bool | int | float | str) -> str:
+def _toml_value(value: bool | int | float | str | list) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml_value, value))}]"
     return repr(value)

@@ -10,16 +10,18 @@ import re
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-NUMBER, WHOLE, FLAG, CHOICE, TEXT, ROWS = "number", "whole", "flag", "choice", "text", "rows"
+NUMBER, WHOLE, FLAG, CHOICE, TEXT = "number", "whole", "flag", "choice", "text"
+PLACES, ROWS = "places", "rows"
 
 
 @dataclass(frozen=True)
 class FieldInfo:
     """One key of a run document.
 
-    `kind` is "number", "whole", "flag", "choice", "text" or "rows"; `low` and `high` bound numbers (`high` is the most
-    characters of a text and the most rows of rows); `choices` are the words a choice may have; `word` is the one word
-    ("auto", "unlimited") a number may be replaced with, or "". `unit` is SI, except degrees in keys ending in `_deg`.
+    `kind` is "number", "whole", "flag", "choice", "text", "places" or "rows"; `low` and `high` bound numbers (`high` is
+    the most characters of a text and the most rows of rows, `most` the most places); `choices` are the words a choice
+    may have; `word` is the one word ("auto", "unlimited") a number may be replaced with, or "". `unit` is SI, except
+    degrees in keys ending in `_deg`.
     A key with `kinds` matters (and may be required) only where its section's `kind` is one of them.
     The value of "rows" is a tuple of instances of the frozen dataclass `row`, in a document an array of tables.
     """
@@ -38,6 +40,7 @@ class FieldInfo:
     required: bool = False
     kinds: tuple[str, ...] = ()
     row: type | None = None
+    most: int = 0
 
     @property
     def row_fields(self) -> tuple[FieldInfo, ...]:
@@ -65,6 +68,8 @@ class FieldInfo:
             return f"at most {self.high:g} characters"
         if self.kind == ROWS:
             return f"at most {self.high:g} rows"
+        if self.kind == PLACES:
+            return f"at most {self.most} pairs of {show_number(self.low)}..{show_number(self.high)} {self.unit}"
         span = f"{show_number(self.low)}..{show_number(self.high)}{' ' + self.unit if self.unit else ''}"
         return f"{span} or {self.word}" if self.word else span
 
@@ -112,6 +117,11 @@ def choice(default: str, choices: tuple[str, ...], label: str, doc: str, **more:
 def text(default: str, most: int, label: str, doc: str, **more: Any) -> Any:
     """Declare free text of at most `most` characters."""
     return _leaf(default, kind=TEXT, high=most, label=label, doc=doc, **more)
+
+
+def places(most: int, low: float, high: float, unit: str, label: str, doc: str, **more: Any) -> Any:
+    """Declare places, pairs of numbers in `low`..`high` [`unit`], at most `most` of them."""
+    return _leaf((), kind=PLACES, most=most, low=low, high=high, unit=unit, label=label, doc=doc, **more)
 
 
 def rows(row: type, most: int, label: str, doc: str) -> Any:

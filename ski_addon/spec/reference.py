@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from .. import atomic
-from .fields import CHOICE, FLAG, ROWS, TEXT, FieldInfo, show_number
+from .fields import CHOICE, FLAG, PLACES, ROWS, TEXT, FieldInfo, show_number
 from .table import SECTIONS, row_kinds, section_fields
 
 HEAD = """\
@@ -41,8 +41,8 @@ line that names the file, the line in it, the key, its value and what is allowed
 run.toml line 11: course.turn_radius = 1.0 is outside 3..200 m: give a number in that range
 ```
 
-Times of a rhythm, gates, points of a path and pushes are rows: their keys stand under a header in double brackets,
-which is written again for each of them, in order, at the end of the file. Messages count them from 1
+Times of a rhythm, gates, points of a path, obstacles and pushes are rows: their keys stand under a header in double
+brackets, which is written again for each of them, in order, at the end of the file. Messages count them from 1
 (`gate 3: radius = 1 is outside ...`).
 
 ```toml
@@ -85,7 +85,7 @@ def _table(title: str, infos: tuple[FieldInfo, ...], text: str = "") -> str:
 def _default(info: FieldInfo) -> str:
     if info.required:
         return "*required*"
-    if info.kind == ROWS:
+    if info.kind in (PLACES, ROWS):
         return "none"
     if isinstance(info.default, str):
         return f'`"{info.default}"`'
@@ -95,7 +95,7 @@ def _default(info: FieldInfo) -> str:
 def _allowed(info: FieldInfo) -> str:
     if info.kind == CHOICE:
         return ", ".join(f'`"{word}"`' for word in info.choices)
-    if info.kind in (FLAG, TEXT, ROWS) or not info.word:
+    if info.kind in (FLAG, TEXT, PLACES, ROWS) or not info.word:
         return info.allowed
     return info.allowed.replace(f"or {info.word}", f'or `"{info.word}"`')
 

@@ -60,8 +60,12 @@ def map_rows(info: FieldInfo, rows: tuple[Any, ...], change: Callable[[FieldInfo
 
 
 def plain_rows(rows: tuple[Any, ...]) -> list[dict[str, Any]]:
-    """Return rows as tables with all their keys."""
-    return [dict(vars(row)) for row in rows]
+    """Return rows as tables with all their keys, places as lists."""
+    return [{name: _plain(value) for name, value in vars(row).items()} for row in rows]
+
+
+def _plain(value: Any) -> Any:
+    return [list(place) for place in value] if isinstance(value, tuple) else value
 
 
 def row_key(info: FieldInfo, number: int, name: str) -> str:

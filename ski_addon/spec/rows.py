@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from .fields import choice, number
+from .fields import choice, number, places, text
 
 BODIES = (
     *("pelvis", "abdomen", "chest", "head"),
@@ -88,6 +88,33 @@ class PointSpec:
         0.0, -50, 5000, "m", "Down", "Distance down the slope's surface along the fall line", required=True
     )
     y: float = number(0.0, -1000, 1000, "m", "Left", "Distance to the left across the slope", required=True)
+
+
+@dataclass(frozen=True)
+class ObstacleSpec:
+    """Something that a course of kind follow goes round, measured from the start; write `[[obstacle]]` above each."""
+
+    kind: str = choice(
+        "disc",
+        ("disc", "line", "polygon"),
+        "Shape",
+        "disc = a round thing such as a tree; line = a fence through its points; polygon = all within its corners",
+        required=True,
+    )
+    points: tuple[tuple[float, float], ...] = places(
+        200,
+        -1000,
+        5000,
+        "m",
+        "Places",
+        "Pairs of metres down the slope and to the left: the middle of a disc, the corners of a line or polygon",
+        required=True,
+    )
+    radius: float = number(0.3, 0.02, 50, "m", "Radius", "Radius of a disc")
+    tolerance: float = number(
+        0.5, 0, 10, "m", "Tolerance", "How far the middle between the skis, the board or the wheels stays away from it"
+    )
+    name: str = text("", 40, "Name", "What messages call it")
 
 
 @dataclass(frozen=True)

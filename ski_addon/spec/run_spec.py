@@ -15,7 +15,7 @@ from .fields import ROWS, rows, text
 from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import ground_beside
-from .rows import GateSpec, PointSpec, PushSpec, RhythmSpec
+from .rows import GateSpec, ObstacleSpec, PointSpec, PushSpec, RhythmSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
 SCHEMA_VERSION = 1
@@ -24,7 +24,7 @@ SCHEMA_VERSION = 1
 
 @dataclass(frozen=True)
 class RunSpec:
-    """One run: skier, slope, course, technique, figure, snow, simulation, bake, and rows of gates, points and pushes.
+    """One run: skier, slope, course, technique, figure, snow, simulation, bake, and rows of gates, points and others.
 
     The same document serves the sidebar, a preset, the command line and the farm. `from_toml`, `from_dict` and
     `with_overrides` return checked specs; call `validate` on one built from the section classes by hand.
@@ -43,6 +43,7 @@ class RunSpec:
     rhythm: tuple[RhythmSpec, ...] = rows(RhythmSpec, 500, "Rhythm", "What a rhythm is like, time by time")
     gate: tuple[GateSpec, ...] = rows(GateSpec, 500, "Gates", "Gates of a gate course, in the order they are passed")
     point: tuple[PointSpec, ...] = rows(PointSpec, 5000, "Points", "Corners of a drawn path, in the order they are met")
+    obstacle: tuple[ObstacleSpec, ...] = rows(ObstacleSpec, 500, "Obstacles", "What a course of kind follow goes round")
     push: tuple[PushSpec, ...] = rows(PushSpec, 100, "Pushes", "Forces from outside that the skier does not know of")
 
     @classmethod

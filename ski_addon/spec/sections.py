@@ -8,7 +8,7 @@ from typing import Literal
 from .fields import choice, flag, number, text, whole
 
 _TURNS, _GATES, _BUMPS = ("turns",), ("gates",), ("bumps",)
-_RHYTHM = ("rhythm",)
+_RHYTHM, _FOLLOW = ("rhythm",), ("follow",)
 
 
 @dataclass(frozen=True)
@@ -132,14 +132,16 @@ class SlopeSpec:
 
 @dataclass(frozen=True)
 class CourseSpec:
-    """Where the skis go: linked turns, gates, a drawn path, lines over bumps and moguls, or what a rhythm makes."""
+    """Where the skis go: linked turns, gates, a drawn path, lines over bumps and moguls, what a rhythm makes, or a path
+    that is followed past obstacles.
+    """
 
     kind: str = choice(
         "turns",
-        ("turns", "gates", "path", "bumps", "rhythm"),
+        ("turns", "gates", "path", "bumps", "rhythm", "follow"),
         "Course",
-        "How the track is described: turns of one radius, gates to pass, a path of points, a line over bumps, or a "
-        "rhythm of leaning from side to side",
+        "How the track is described: turns of one radius, gates to pass, a path of points, a line over bumps, a rhythm "
+        "of leaning from side to side, or a path to follow past obstacles",
         required=True,
     )
     turn_count: int = whole(6, 1, 500, "turns", "Turns", "Number of turns", required=True, kinds=_TURNS)
@@ -314,6 +316,34 @@ class CourseSpec:
         "Distance down the slope from turn to turn; auto = from crest to crest",
         word="auto",
         kinds=_BUMPS,
+    )
+    path_shape: str = choice(
+        "spline",
+        ("spline", "lines"),
+        "Path shape",
+        "How the points make the path to follow: round, or straight from point to point",
+        kinds=_FOLLOW,
+    )
+    plan_stages: int = whole(
+        10, 2, 16, "stages", "Stages", "How many stages a plan looks ahead; the first is ridden", kinds=_FOLLOW
+    )
+    plan_stage_time: float = number(
+        0.3, 0.1, 0.6, "s", "Stage time", "Duration of a stage, in which the curvature changes evenly", kinds=_FOLLOW
+    )
+    plan_lean_deg: float = number(
+        30.0, 5, 60, "deg", "Planned lean", "Most lean of the body when a path is followed", kinds=_FOLLOW
+    )
+    plan_radius: float = number(
+        4.0, 1, 200, "m", "Planned radius", "Tightest radius of the track when a path is followed", kinds=_FOLLOW
+    )
+    plan_steering: float = number(
+        0.4,
+        0.02,
+        5,
+        "1/m/s",
+        "Planned steering",
+        "How quickly the track's curvature may change when a path is followed",
+        kinds=_FOLLOW,
     )
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import tomllib
 import unicodedata
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import SpecError
 from . import row_values
-from .fields import CHOICE, FLAG, NUMBER, ROWS, TEXT, WHOLE, FieldInfo
+from .fields import CHOICE, FLAG, NUMBER, PLACES, ROWS, TEXT, WHOLE, FieldInfo
 
 if TYPE_CHECKING:
     from .run_spec import RunSpec
@@ -27,6 +28,8 @@ def check(info: FieldInfo, value: object, spec: RunSpec | None = None) -> None:
         _check_text(info, value)
     elif info.kind == ROWS:
         row_values.check_rows(info, value, check)
+    elif info.kind == PLACES:
+        _check_places(info, value)
     elif not (info.word and isinstance(value, str) and value == info.word):
         _check_number(info, value, spec)
 
@@ -35,6 +38,8 @@ def canonical(info: FieldInfo, value: Any) -> Any:
     """Return a checked value in the type of its field (2 -> 2.0 for a number, 6.0 -> 6 for a whole one)."""
     if info.kind == ROWS:
         return row_values.map_rows(info, value, canonical)
+    if info.kind == PLACES:
+        return tuple((float(x) + 0.0, float(y) + 0.0) for x, y in value)
     if info.kind == NUMBER and not isinstance(value, str):
         return float(value) + 0.0  # no negative zero
     return int(value) if info.kind == WHOLE else value
@@ -76,6 +81,20 @@ def _check_text(info: FieldInfo, value: object) -> None:
         raise SpecError(info.key, value, info.allowed, "shorten it", problem=problem)
     if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in value if letter not in "\n\t"):
         raise SpecError(info.key, value, problem="has control characters", hint="remove them")
+
+
+def _check_places(info: FieldInfo, value: Any) -> None:
+    example = f"write pairs of numbers, for instance [[3, 1.5], [8, 2]], {info.allowed}"
+    if not isinstance(value, list | tuple):
+        raise SpecError(info.key, value, problem="is not a list of places", hint=example)
+    if len(value) > info.most:
+        problem = f"has {len(value)} places, allowed are"
+        raise SpecError(info.key, None, info.allowed, "take some out", problem=problem)
+    for place in value:
+        if not isinstance(place, list | tuple) or len(place) != 2:
+            raise SpecError(info.key, place, problem="has a place that is no pair of numbers", hint=example)
+        for number in place:
+            _check_number(replace(info, kind=NUMBER), number, None)
 
 
 def _check_number(info: FieldInfo, value: Any, spec: RunSpec | None) -> None:

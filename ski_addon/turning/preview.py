@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..course import Track, build_track
+from ..course import CourseRide, Track, build_track, ride_course
 from ..errors import SkiAddonError
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..planning import as_planned
@@ -33,14 +33,14 @@ TIME_STEP = 0.01
 RIDE_STEP = 0.02
 """Step [s] in which a preview's speed is integrated."""
 LEAST_MOMENTS = 20
-"""A rhythm that cannot be kept for so many moments has no preview."""
+"""A rhythm or path that cannot be kept to for so many moments has no preview."""
 
 
 def preview_motion(spec: RunSpec) -> TurningMotion:
     """Return the motion of the leaning body on the whole run of `spec`, whatever its course and ground.
 
     Raises `SpecError` or `PlanInfeasible` for a course without a track. Where friction stops a skier on the way, or a
-    rhythm cannot go on, the motion ends; see `preview_course`.
+    rhythm or a path past obstacles cannot go on, the motion ends; see `preview_course`.
     """
     return preview_course(spec).motion
 
@@ -54,7 +54,7 @@ class Preview:
 
 
 def preview_course(spec: RunSpec) -> Preview:
-    """Return the preview of a run; a rhythm that cannot be kept to its end is there up to that place, with the problem.
+    """Return the preview of a run; a rhythm or path that cannot be kept to ends at that place, with the problem.
 
     Raises what `preview_motion` raises.
     """
@@ -67,7 +67,20 @@ def preview_course(spec: RunSpec) -> Preview:
             raise made.problem
         if made.problem is not None or (level and not stops):
             return Preview(_of_rhythm(made, terrain), made.problem)
+    if spec.course.kind == "follow":
+        ride = ride_course(believed, terrain)
+        if ride.stopped is not None and len(ride.time) < LEAST_MOMENTS:
+            raise ride.stopped
+        if ride.stopped is not None or (level and not stops):
+            return Preview(_of_ride(ride, body_of(believed), terrain), ride.stopped)
     return Preview(preview_track(believed, build_track(believed, terrain), terrain), None)
+
+
+def _of_ride(ride: CourseRide, body: TurningBody, terrain: Terrain) -> TurningMotion:
+    """Return how a path is followed as motion: the plan has the lean already."""
+    x, y, _, lean, lean_rate, curvature = ride.states.T
+    place = np.stack((x * np.cos(terrain.mean_angle), y), axis=1)
+    return motion_on_ground(body, terrain, ride.time, place, lean, lean_rate, curvature, ride.speed)
 
 
 def _of_rhythm(made: RhythmRun, terrain: Terrain) -> TurningMotion:

@@ -8,7 +8,7 @@ import string
 from typing import Any
 
 from ski_addon.spec import FieldInfo, RunSpec, field_table
-from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, ROWS, TEXT, WHOLE
+from ski_addon.spec.fields import CHOICE, FLAG, NUMBER, PLACES, ROWS, TEXT, WHOLE
 from ski_addon.spec.table import get_value
 
 ROW_KEYS = tuple(key for key, info in field_table().items() if info.kind == ROWS)
@@ -30,6 +30,8 @@ def random_value(info: FieldInfo, rng: random.Random) -> Any:
         return f"/{written}"[: int(info.high)] if info.key.endswith("_file") else written  # a whole path stays as it is
     if info.kind == ROWS:
         return [random_row(info, rng) for _ in range(rng.choice((1, 2, 5)))]
+    if info.kind == PLACES:
+        return [[rng.uniform(info.low, info.high) for _ in "xy"] for _ in range(rng.choice((1, 2, 5)))]
     if info.word and rng.random() < 0.2:
         return info.word
     if info.kind == WHOLE:
@@ -47,7 +49,14 @@ def random_row(info: FieldInfo, rng: random.Random) -> dict[str, Any]:
 def held(spec: RunSpec, key: str) -> Any:
     """The value of a key as a document has it: rows as tables."""
     value = get_value(spec, key)
-    return [dataclasses.asdict(row) for row in value] if key in ROW_KEYS else value
+    return [_as_written(dataclasses.asdict(row)) for row in value] if key in ROW_KEYS else value
+
+
+def _as_written(row: dict[str, Any]) -> dict[str, Any]:
+    """A row with its places as the lists that a document has."""
+    return {
+        name: [list(place) for place in value] if isinstance(value, tuple) else value for name, value in row.items()
+    }
 
 
 def random_flat(rng: random.Random, share: float = 1.0) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from ski_addon.body.skeleton import BODY_NAMES
 from ski_addon.errors import SpecError
 from ski_addon.spec import GateSpec, PointSpec, PushSpec, RunSpec, row_kinds, section_fields
 from ski_addon.spec.document import SIZE_MAX, find_line
-from ski_addon.spec.fields import NUMBER
+from ski_addon.spec.fields import NUMBER, TEXT
 from ski_addon.spec.rows import BODIES
 from tests.spec.random_documents import ROW_KEYS, misspelt, random_row
 
@@ -106,7 +106,9 @@ def test_more_rows_than_that_are_refused(key, most):
     assert line == f"{key} has {most + 1} rows, allowed are at most {most} rows: take some out"
 
 
-@pytest.mark.parametrize(("key", "leaf"), LEAVES, ids=lambda value: getattr(value, "key", value))
+@pytest.mark.parametrize(
+    ("key", "leaf"), [pair for pair in LEAVES if pair[1].kind != TEXT], ids=lambda value: getattr(value, "key", value)
+)
 def test_a_bad_value_is_named_by_the_number_of_its_row(key, leaf):
     good = [random_row(row_kinds()[key], random.Random(seed)) for seed in range(3)]
     bad = [math.nan, "⛷", True, None, [1], {"x": 1}, 10**400]
@@ -118,6 +120,24 @@ def test_a_bad_value_is_named_by_the_number_of_its_row(key, leaf):
     assert refused(lambda: with_gates(*GATES[:2], {**GATES[2], "radius": 1})) == (
         "gate 3: radius = 1 is outside 3..200 m or auto: give a number in that range"
     )
+
+
+def test_bad_places_of_a_row_are_named():
+    def obstacle(points):
+        return lambda: RunSpec.from_dict({"obstacle": [{"kind": "line", "points": points}]})
+
+    assert refused(obstacle([[1, 2, 3]])).startswith("obstacle 1: points = [1, 2, 3] has a place that is no pair of")
+    assert refused(obstacle([[1, "a"]])).startswith('obstacle 1: points = "a" is not a number: give a number in')
+    assert refused(obstacle([[1, 9e9]])).endswith("is outside -1000..5000 m: give a number in that range")
+    assert "has 201 places, allowed are at most 200 pairs" in refused(obstacle([[1, 2]] * 201))
+
+
+def test_places_are_tuples_of_floats_and_written_as_lists():
+    row = {"kind": "line", "points": [[1, 2], [-0.0, 4.5]]}
+    spec = RunSpec.from_dict({"obstacle": [row]})
+    assert spec.obstacle[0].points == ((1.0, 2.0), (0.0, 4.5)) and isinstance(hash(spec), int)
+    assert "points = [[1.0, 2.0], [0.0, 4.5]]" in spec.to_toml() and RunSpec.from_text(spec.to_toml()) == spec
+    assert spec.with_overrides({"obstacle.1.points": "[[3, 4], [5, 6]]"}).obstacle[0].points[0] == (3.0, 4.0)
 
 
 @pytest.mark.parametrize(

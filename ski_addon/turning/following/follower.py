@@ -87,7 +87,8 @@ def follow(problem: Problem, start: Bodies | None = None, planner: Planner = bes
     end = int(np.argmax(reached >= (reached.max() if reason else lane.path.last))) + 1
     every, apart = np.concatenate(states)[:end], np.concatenate(distance)[:end]
     time = settings.sample_time * np.arange(end)
-    return Followed(time, every, reached[:end], apart, np.array(rates), np.array(nodes), reason)
+    taken = np.array(rates[: -(-(end - 1) // settings.samples)], dtype=float)
+    return Followed(time, every, reached[:end], apart, taken, np.array(nodes), reason)
 
 
 def _turned_back(problem: Problem, furthest: int) -> str:
