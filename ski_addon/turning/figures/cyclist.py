@@ -11,7 +11,7 @@ from .bicycle import Bicycle, ride
 from .bicycle_sizes import TOES_DOWN, TRUNK, fork_place, grip_places, saddle_place
 from .footing import tilt_for_curvature
 from .model import FigureModel
-from .pedalling import crank_angle
+from .pedalling import crank_angle, held_cranks
 from .person import Frames, Limbs, Trunk, person_frames, sockets, solve_arms, solve_legs, trunk_at_origin
 from .sampling import Run
 from .vectors import Array, columns, cross, dot, turn_yxz, unit
@@ -42,10 +42,8 @@ def bicycle_frames(model: FigureModel, figure: FigureSpec, run: Run, time: Array
     skeleton, sizes = model.skeleton, model.sizes
     moments = run.at(time)
     bicycle = ride(sizes, run, time)
-    knots = run.motion.distance - sizes["bottom_bracket_forward"]
-    bends = tilt_for_curvature(run, run.motion.curvature, 1.0)
-    angle = crank_angle(bicycle.rear_way, knots, bends, figure.development, figure.coasting)
-    pedals = _pedals(sizes, bicycle, angle)
+    held = held_cranks(run.motion, figure.development) if figure.coasting else []
+    pedals = _pedals(sizes, bicycle, crank_angle(held, bicycle.rear_way, figure.development))
     turning = tilt_for_curvature(run, moments.curvature, 1.0)
     twist = 0.0 if figure.twist == "auto" else float(figure.twist)
     trunk = _trunk(model, bicycle, moments.lean, turning, twist)

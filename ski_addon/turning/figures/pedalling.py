@@ -1,4 +1,8 @@
-"""How far the cranks have turned: by the way on the straights, held with the inside pedal up in sharp turns."""
+"""The cranks: turned by the way travelled, held with the inside pedal up where the bicycle leans over [VP93 sec. 7].
+
+A freewheel lets the cranks be slower than the wheel, never faster. Between two sharp turns they are brought from one
+inside pedal up to the next by as many turns as the way allows, and start and stop gently.
+"""
 
 from __future__ import annotations
 
@@ -6,100 +10,86 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...gravity import STANDARD_GRAVITY
+from ..motion import TurningMotion
 from .vectors import Array
 
-SHARP = np.deg2rad(13.0)
-"""Tilt of a steady turn from which the inside pedal is held up."""
-SHORTEST, RAMP = 0.6, 1.2
-"""Turns shorter than this [m] are pedalled through, gaps as short are no gaps; way [m] in which the cranks speed up."""
-QUICKEST = 2.5
-"""The cranks turn this much faster than usual at most, from a turn to one to the other side that follows closely."""
-LEFT_UP = -0.5 * np.pi
-"""Angle of the cranks at which the left pedal is up; half a turn later it is the right one."""
+LEANING = np.deg2rad(13.0)
+"""Lean [rad] of a steady turn from which on the cranks are held."""
+UP = {1: -0.5 * np.pi, -1: 0.5 * np.pi}
+"""Angle of the cranks [rad] with the left pedal up, for a turn to the left, and with the right one up."""
+RAMP, START = 0.2, 1.0
+"""Share of a stretch of pedalling in which the cranks gather speed, and as long to stop; at both ends of a run [m]."""
 
 
 @dataclass(frozen=True)
-class _Turn:
-    """A sharp turn between two places of the way [m]; `left` says to which side."""
+class Held:
+    """A stretch of the way, from `begin` to `end` [m], on which the cranks are held at `angle` [rad]."""
 
-    start: float
+    begin: float
     end: float
-    left: bool
+    angle: float
 
 
-def crank_angle(way: Array, knots: Array, tilt: Array, development: float, coasting: bool) -> Array:
-    """Return the angle (...) [rad] of the cranks after `way` (...) [m]: 0 with the left arm ahead, forward positive.
+def held_cranks(motion: TurningMotion, development: float) -> list[Held]:
+    """Return where the cranks of a bicycle are held in `motion`; `development` [m] is its way for one turn of them."""
+    pull = np.arctan(np.square(motion.speed) * motion.curvature / STANDARD_GRAVITY)
+    side = np.sign(pull) * (np.abs(pull) > LEANING)
+    bounds = np.concatenate(([0], np.flatnonzero(np.diff(side)) + 1, [len(side)]))
+    sharp = [(i, j - 1) for i, j in zip(bounds, bounds[1:], strict=False) if side[i] and j - i > 1]
+    turns = [(motion.distance[i], motion.distance[j], int(side[i])) for i, j in sharp]
+    return _placed([turn for turn in turns if turn[1] > turn[0]], development)
 
-    `tilt` (n,) [rad] is that of a steady turn at `knots` (n,) [m] of the way; `development` [m] the way of a whole turn
-    of the cranks. A cyclist who is `coasting` holds the inside pedal up in sharp turns, and in between pedals a little
-    faster or slower than the development says, never backward.
+
+def _placed(turns: list[tuple[float, float, int]], development: float) -> list[Held]:
+    """Return the stretches (begin, end, side) with angles that one after the other can be reached.
+
+    A stretch gives way to its neighbours where there is too little way to change the pedals; one that has nothing left
+    is pedalled through.
     """
-    usual = 2.0 * np.pi / development
-    turns = _apart(_sharp_turns(knots, tilt), development / QUICKEST) if coasting else []
-    if not turns:
-        return usual * (way - knots[0])
-    held = _held(turns, usual * (turns[0].start - float(knots[0])), usual)
-    out = held[0] - usual * _started(turns[0].start - way)
-    for index, turn in enumerate(turns):
-        if index:
-            before, rise = turns[index - 1].end, held[index] - held[index - 1]
-            out = np.where(way > before, held[index - 1] + rise * _eased(way, before, turn.start), out)
-        out = np.where(way >= turn.start, held[index], out)
-    return np.where(way > turns[-1].end, held[-1] + usual * _started(way - turns[-1].end), out)
-
-
-def _apart(turns: list[_Turn], gap: float) -> list[_Turn]:
-    """Return `turns` held so much shorter that there is a `gap` [m] to pedal in between them; too short ones go."""
-    kept: list[_Turn] = []
-    for index, turn in enumerate(turns):
-        before = turn.start - turns[index - 1].end if index else gap
-        after = turns[index + 1].start - turn.end if index + 1 < len(turns) else gap
-        start = turn.start + 0.5 * max(gap - before, 0.0)
-        end = turn.end - 0.5 * max(gap - after, 0.0)
-        if end - start > 0.5 * SHORTEST:
-            kept.append(_Turn(start, end, turn.left))
-    return kept
-
-
-def _held(turns: list[_Turn], first: float, usual: float) -> list[float]:
-    """Return the angles [rad] held in `turns`: the nearest to what is pedalled between them, never backward."""
-    held: list[float] = []
-    for index, turn in enumerate(turns):
-        wanted = first if not index else held[-1] + usual * (turn.start - turns[index - 1].end)
-        inside = LEFT_UP + (0.0 if turn.left else np.pi)
-        angle = inside + 2.0 * np.pi * round((wanted - inside) / (2.0 * np.pi))
-        held.append(angle + 2.0 * np.pi if held and angle < held[-1] - 1e-9 else angle)
+    held: list[Held] = []
+    for begin, end, side in turns:
+        if not held:
+            held.append(Held(begin, end, UP[side]))
+            continue
+        last = held[-1]
+        needed = np.mod(UP[side] - last.angle, 2.0 * np.pi)
+        missing = 0.5 * max(needed / _most(1.0, development) - (begin - last.end), 0.0)
+        if last.end - missing <= last.begin or begin + missing >= end:
+            continue
+        held[-1] = Held(last.begin, last.end - missing, last.angle)
+        begin = begin + missing
+        rounds = np.floor((_most(begin - held[-1].end, development) - needed) / (2.0 * np.pi) + 1e-9)
+        held.append(Held(begin, end, last.angle + needed + 2.0 * np.pi * rounds))
     return held
 
 
-def _started(way: Array) -> Array:
-    """Return the `way` (...) [m] less what the cranks are behind after they started to turn at 0."""
+def _most(way: float, development: float) -> float:
+    """Return how far [rad] the cranks can come on `way` [m] from rest to rest."""
+    return 2.0 * np.pi * (1.0 - RAMP) * way / development
+
+
+def crank_angle(held: list[Held], way: Array, development: float) -> Array:
+    """Return the angle (m,) [rad] of the cranks where the rear wheel has come `way` (m,) [m]."""
+    rate = 2.0 * np.pi / development
+    if not held:
+        return rate * way
+    angle = held[0].angle - rate * _from_rest(held[0].begin - way)
+    for last, following in zip(held, held[1:], strict=False):
+        share = np.clip((way - last.end) / (following.begin - last.end), 0.0, 1.0)
+        angle = np.where(way > last.end, last.angle + (following.angle - last.angle) * _rest_to_rest(share), angle)
+    return angle + rate * _from_rest(way - held[-1].end)
+
+
+def _from_rest(way: Array) -> Array:
+    """Return how much of the way (m,) [m] the cranks turn with the wheel after they were held; nothing before it."""
     way = np.maximum(way, 0.0)
-    return np.where(way < RAMP, np.square(way) / (2.0 * RAMP), way - 0.5 * RAMP)
+    return np.where(way < START, np.square(way) / (2.0 * START), way - 0.5 * START)
 
 
-def _sharp_turns(knots: Array, tilt: Array) -> list[_Turn]:
-    """Return the sharp turns in order; those that follow closely to the same side are one."""
-    found: list[_Turn] = []
-    for left in (True, False):
-        sharp = np.concatenate(([False], (tilt if left else -tilt) > SHARP, [False]))
-        edges = np.flatnonzero(np.diff(sharp.astype(int)))
-        spans = [(float(knots[a]), float(knots[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-        joined: list[tuple[float, float]] = []
-        for start, end in spans:
-            if joined and start - joined[-1][1] < SHORTEST:
-                joined[-1] = (joined[-1][0], end)
-            else:
-                joined.append((start, end))
-        found += [_Turn(start, end, left) for start, end in joined if end - start > SHORTEST]
-    return sorted(found, key=lambda turn: turn.start)
-
-
-def _eased(way: Array, start: float, end: float) -> Array:
-    """Return 0 at `start` and 1 at `end` [m] of the `way`, with an even rise between ramps."""
-    length = max(end - start, 1e-9)
-    ramp = min(0.5, RAMP / length)
-    u = np.clip((way - start) / length, 0.0, 1.0)
-    rise = np.where(u < ramp, np.square(u) / (2.0 * ramp), u - 0.5 * ramp)
-    rise = np.where(u > 1.0 - ramp, (1.0 - ramp) - np.square(1.0 - u) / (2.0 * ramp), rise)
-    return rise / (1.0 - ramp)
+def _rest_to_rest(share: Array) -> Array:
+    """Return the part of a turn that is done at a `share` (m,) of its way, with gentle start and stop."""
+    peak = 1.0 / (1.0 - RAMP)
+    near = np.minimum(share, 1.0 - share)
+    eased = peak * np.where(near < RAMP, np.square(near) / (2.0 * RAMP), near - 0.5 * RAMP)
+    return np.where(share < 0.5, eased, 1.0 - eased)

@@ -205,7 +205,7 @@ def _free(
             polar = polar + part * (end_polar[index] - CARRIED[0])
             azimuth = azimuth + part * (end_azimuth[index] - CARRIED[1])
             height = height + part * lower[index]
-        margin = CLEARANCE * (1.0 - np.maximum(before, after))
+        margin = CLEARANCE * np.sqrt(1.0 - np.maximum(before, after))  # evenly down to the touch: no tip drags
     least = np.arccos(np.clip((height - margin) / length, 0.0, 1.0))
     polar = np.maximum(polar, least)
     sine = np.sin(polar)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from ski_addon.spec import RunSpec
-from ski_addon.turning.figures import figure_channels
+from ski_addon.turning.figures import build_figure, figure_channels, figure_poses
 from ski_addon.turning.figures.bicycle_sizes import grip_places
 from tests.turning.figures.measures import place, slip_per_metre, turn
+from tests.turning.figures.motions import turns
 from tests.turning.figures.test_poses import GROUNDS, ridden
 
 MILLIMETRE = 1e-3
@@ -62,11 +63,16 @@ def test_claim_15_wheels_roll_and_do_not_slip(ground):
         assert away.max() < (2e-3 if ground == "plane" else 0.03), name
 
 
-def test_pedals_stay_level():
-    _, poses, _, _ = ridden("bicycle", fps=120.0)
-    for side in "LR":
-        level = np.einsum("mji,mjk->mik", turn(poses, "frame"), turn(poses, f"pedal.{side}"))
-        np.testing.assert_allclose(level, np.broadcast_to(np.eye(3), level.shape), atol=1e-9)
+def test_pedals_stay_level_and_cranks_turn_by_the_way():
+    spec = RunSpec.from_dict({"figure": {"kind": "bicycle", "coasting": False}})
+    model, motion = build_figure(spec), turns(seconds=6.0)
+    poses = figure_poses(model, spec, motion, 120.0)
+    level = np.einsum("mji,mjk->mik", turn(poses, "frame"), turn(poses, "pedal.L"))
+    np.testing.assert_allclose(level, np.broadcast_to(np.eye(3), level.shape), atol=1e-9)
+    crank = np.einsum("mji,mjk->mik", turn(poses, "frame"), turn(poses, "crank"))
+    angle = np.unwrap(np.arctan2(crank[:, 0, 2], crank[:, 0, 0]))
+    way = motion.distance[-1] - motion.distance[0]
+    assert (angle[-1] - angle[0]) / (2.0 * np.pi) * spec.figure.development == pytest.approx(way, rel=0.02)
 
 
 @pytest.mark.parametrize("ground", GROUNDS)
