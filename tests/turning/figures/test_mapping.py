@@ -70,8 +70,9 @@ def test_claim_15_the_waist_bends_with_the_knees(kind):
     _, poses, _ = mapped(kind, lean=30.0)
     knees = np.mean([joint_angles(poses, f"shank.{side}")[:, 0] for side in "LR"], axis=0)
     trunk = np.degrees(np.arccos(np.clip(turn(poses, "chest")[:, 2, 2], -1, 1)))
-    assert correlation(trunk, knees) > 0.6
-    stiff, soft = (np.ptp(joint_angles(mapped(kind, lean=30.0, leg_stiffness=k)[1], "shank.L")[:, 0]) for k in (8.0, 3.0))
+    assert correlation(trunk, knees) > (0.99 if kind == "alpine" else 0.85)
+    springs = (mapped(kind, lean=30.0, leg_stiffness=stiffness)[1] for stiffness in (8.0, 3.0))
+    stiff, soft = (np.ptp(joint_angles(poses, "shank.L")[:, 0]) for poses in springs)
     assert soft > 1.5 * stiff, "a softer spring, more up and down"
 
 
@@ -114,7 +115,7 @@ def test_claim_15_poles_are_planted_at_their_phase_and_their_tips_stay(kind, sty
     phase = np.interp(poses.time, motion.time, np.unwrap(motion.phase))
     for side, half in (("L", 0.0), ("R", 180.0)):
         tip = point(poses, f"pole.{side}", [0.0, 0.0, -length])
-        down = np.abs(tip[:, 2]) < 1e-4
+        down = np.abs(tip[:, 2]) < 1e-6
         begin = np.flatnonzero(~down[:-1] & down[1:]) + 1
         end = np.flatnonzero(down[:-1] & ~down[1:])
         assert len(begin) >= 3
