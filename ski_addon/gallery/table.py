@@ -41,6 +41,10 @@ PICTURES: dict[str, Picture] = {
     "figure_07": Picture("Controlling ellipses", "ellipses", "draw_controlling_ellipses", (10.0, 5.0)),
     "figure_08": Picture("A change of direction by a short turn", "swings", "draw_direction_change", (10.0, 5.0)),
     "figure_10": Picture("Four tracks by phase control", "tracks", "draw_four_tracks", (10.0, 9.0)),
+    "figure_16": Picture("Paths between trees", "paths", "draw_trees", (11.0, 2.3)),
+    "figure_17": Picture("Slalom turns found by planning", "paths", "draw_gates", (11.0, 1.95)),
+    "figure_18": Picture("Round the corner of a street", "paths", "draw_corner", (5.6, 7.0)),
+    "photo_5": Picture("Past potholes", "paths", "draw_potholes", (11.0, 2.5)),
 }
 """Name of the file without its suffix -> picture, in the paper's order."""
 

@@ -28,7 +28,7 @@ def test_command_writes_small_pictures(tmp_path, capsys):
 
 def test_unknown_picture_is_named_with_the_nearest(tmp_path, capsys):
     with pytest.raises(SpecError, match="did you mean figure_10"):
-        find_pictures(["figure_1"])
+        find_pictures(["figure_100"])
     assert cli.main(["gallery", "figure_7", "-o", str(tmp_path / "out")]) == 2
     assert "figure_07" in capsys.readouterr().err and not (tmp_path / "out").exists()
 
