@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,7 +54,8 @@ def find_pictures(names: Sequence[str]) -> dict[str, Picture]:
     """Return the pictures of these names, or all if there are none; an unknown name raises `SpecError`."""
     for name in names:
         if name not in PICTURES:
-            nearest = difflib.get_close_matches(name[:100], PICTURES, n=1, cutoff=0.0)[0]
+            padded = re.sub(r"^figure_?(\d)$", r"figure_0\1", name[:100])
+            nearest = difflib.get_close_matches(padded, PICTURES, n=1, cutoff=0.0)[0]
             raise SpecError(name, problem="is not a picture of the gallery", hint=f"did you mean {nearest}?")
     return {name: PICTURES[name] for name in (names or PICTURES)}
 
