@@ -1,8 +1,8 @@
 """How long previews take: `python -m benchmarks.preview [--rounds N] [--json FILE]`.
 
-Medians of 10 s of motion: one figure along a track that is there already, one figure by phase control, and a thousand
-figures by phase control that all differ in frequency, sharpness, heading and speed. Wall times of one thread, with the
-calibration loop of `benchmarks.step` in the same run.
+Medians of 10 s of motion: one figure along a track that is there already, its poses at 24 frames a second, one figure
+by phase control, and a thousand figures by phase control that all differ in frequency, sharpness, heading and speed.
+Wall times of one thread, with the calibration loop of `benchmarks.step` in the same run.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ from ski_addon.planning import as_planned
 from ski_addon.spec import RunSpec
 from ski_addon.terrain import build_terrain
 from ski_addon.turning.body import TurningBody
+from ski_addon.turning.figures import build_figure, figure_poses
 from ski_addon.turning.many import motions_on_slope
 from ski_addon.turning.pace import Pace
 from ski_addon.turning.preview import preview_track
 from ski_addon.turning.steering import Start, Steered, Targets, steer
 
 PRESETS = Path(__file__).resolve().parents[1] / "presets" / "runs"
-TRACKS = ("giant_slalom", "slalom", "rolling_slalom", "moguls")
-DURATION, COUNT = 10.0, 1000
+TRACKS = ("giant_slalom", "slalom", "rolling_slalom", "moguls", "snowboard_carving", "telemark_turns", "bicycle_slalom")
+DURATION, COUNT, FPS = 10.0, 1000, 24.0
 SLOPE = Pace(9.66, 1.70, friction=0.071, friction_per_speed=0.004, drag=0.005)
 """Ten degrees of usual snow."""
 
@@ -44,13 +45,16 @@ def median(function: Callable[[], Any], rounds: int) -> float:
     return 1e3 * float(np.median(times))
 
 
-def along_track(name: str, rounds: int) -> float:
-    """Return the time [ms] of 10 s of preview of a shipped run, whose track is given."""
+def along_track(name: str, rounds: int) -> tuple[float, float]:
+    """Return the times [ms] of 10 s of preview of a shipped run, whose track is given, and of its figure's poses."""
     spec = as_planned(RunSpec.from_toml(PRESETS / f"{name}.toml"))
     terrain = build_terrain(spec.slope)
     track = build_track(spec, terrain)
-    duration = preview_track(spec, track, terrain).duration
-    return median(lambda: preview_track(spec, track, terrain), rounds) * DURATION / duration
+    motion, figure = preview_track(spec, track, terrain), build_figure(spec)
+    share = DURATION / motion.duration
+    moved = median(lambda: preview_track(spec, track, terrain), rounds)
+    posed = median(lambda: figure_poses(figure, spec, motion, FPS), rounds)
+    return share * moved, share * posed
 
 
 def swings(count: int, step: float, seed: int = 1) -> tuple[Targets, Start]:
@@ -82,8 +86,9 @@ def main() -> None:
     found = {"calibration_us": 1e6 * calibration()}
     print(f"calibration loop                 {found['calibration_us']:8.1f} us")
     for name in TRACKS:
-        found[f"track_{name}_ms"] = along_track(name, arguments.rounds)
-        print(f"one figure along {name:<16}{found[f'track_{name}_ms']:8.1f} ms for 10 s")
+        moved, posed = along_track(name, arguments.rounds)
+        found |= {f"track_{name}_ms": moved, f"poses_{name}_ms": posed}
+        print(f"one figure along {name:<19}{moved:5.1f} ms for 10 s, and {posed:4.1f} ms for its poses")
     found["rhythm_ms"] = median(lambda: swing_many(1, 0.01), arguments.rounds)
     print(f"one figure by phase control      {found['rhythm_ms']:8.1f} ms for 10 s")
     found["thousand_ms"] = median(lambda: swing_many(COUNT, 0.02), max(arguments.rounds // 2, 3))

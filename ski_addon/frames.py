@@ -78,24 +78,16 @@ def matrix_from_quaternion(q: Array) -> Array:
 def quaternion_from_matrix(matrix: Array) -> Array:
     """Return unit quaternions (..., 4) of rotation matrices (..., 3, 3), from the largest of the four squares."""
     m = np.asarray(matrix, dtype=float)
-    diagonal = np.moveaxis(np.diagonal(m, axis1=-2, axis2=-1), -1, 0)
-    trace = diagonal.sum(axis=0)
-    squares = np.stack((trace, *diagonal), axis=-1)
-    largest = np.argmax(squares, axis=-1)
-    xy, xz, yz = m[..., 0, 1], m[..., 0, 2], m[..., 1, 2]
-    yx, zx, zy = m[..., 1, 0], m[..., 2, 0], m[..., 2, 1]
-    xx, yy, zz = diagonal
-    candidates = np.stack(
-        (
-            np.stack((1 + trace, zy - yz, xz - zx, yx - xy), axis=-1),
-            np.stack((zy - yz, 1 + xx - yy - zz, xy + yx, xz + zx), axis=-1),
-            np.stack((xz - zx, xy + yx, 1 + yy - xx - zz, yz + zy), axis=-1),
-            np.stack((yx - xy, xz + zx, yz + zy, 1 + zz - xx - yy), axis=-1),
-        ),
-        axis=-2,
-    )
-    chosen = np.take_along_axis(candidates, largest[..., None, None], axis=-2)[..., 0, :]
-    return chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.ascontiguousarray(np.moveaxis(m.reshape(-1, 3, 3), 0, -1))
+    trace = xx + yy + zz
+    candidates = np.empty((4, 4, len(trace)))  # row i is the quaternion times four times its part i
+    candidates[0] = 1 + trace, zy - yz, xz - zx, yx - xy
+    candidates[1] = candidates[0, 1], 1 + xx - yy - zz, xy + yx, xz + zx
+    candidates[2] = candidates[0, 2], candidates[1, 2], 1 + yy - xx - zz, yz + zy
+    candidates[3] = candidates[0, 3], candidates[1, 3], candidates[2, 3], 1 + zz - xx - yy
+    largest = np.argmax(np.stack((trace, xx, yy, zz)), axis=0)
+    chosen = candidates[largest, :, np.arange(len(trace))].reshape(*m.shape[:-2], 4)
+    return np.asarray(chosen / np.linalg.norm(chosen, axis=-1, keepdims=True))
 
 
 def continuous_quaternions(q: Array) -> Array:

@@ -119,10 +119,11 @@ class _Rider:
         columns = (track.tangent @ GRAVITY, track.left @ GRAVITY, track.curvature)
         table = [np.interp(places, track.arc_length, column) for column in columns]
         table += [np.interp(places, body.arc_length, column) for column in (body.normal, body.swing)]
-        table += [_blurred(column, FORESIGHT / self.step) for column in table[:3]]
+        mean = [_blurred(column, FORESIGHT / self.step) for column in table[:3]]
         # the speed that the energy over the mean ground stands for: a crest slows, a hollow speeds up, neither matters
-        table += [2.0 * np.cumsum(table[5] - table[0]) * self.step]
+        self.taken = (2.0 * np.cumsum(mean[0] - table[0]) * self.step).tolist()
         self.table = np.stack(table, axis=1).tolist()
+        self.mean = np.stack(mean, axis=1).tolist()
         self.last = count - 1
         self.snow, self.control, self.track = snow, control, track
         self.most = self._speeds_to_stop_from()
@@ -140,7 +141,7 @@ class _Rider:
         braking = track.stop_from + BEFORE_BRAKING * most
         square = (ARRIVAL * most) ** 2
         for i in range(min(int(braking / step), self.last), -1, -1):
-            *_, along, left, bend, _ = self.table[i]
+            along, left, bend = self.mean[i]
             speed = math.sqrt(square)
             gain = self.snow.glide_acceleration(along, STANDARD_GRAVITY, speed)
             side = abs(bend * most * most - left)  # from the speed to hold: one who is slow brakes less
@@ -152,14 +153,30 @@ class _Rider:
                 break
         return out
 
-    def at(self, arc: float) -> list[float]:
-        """Return gravity along and to the left, curvature, normal force and swing at `arc` [m]; then the first three
-        smoothed, and twice the energy per mass that bumps have taken [m^2/s^2].
-        """
+    def _where(self, arc: float) -> tuple[int, float]:
+        """Return the row of the tables before `arc` [m], and the share of the way to the next."""
         where = arc / self.step
         index = min(max(int(where), 0), self.last)
-        share = min(max(where - index, 0.0), 1.0)
-        return [a + share * (b - a) for a, b in zip(self.table[index], self.table[index + 1], strict=True)]
+        return index, min(max(where - index, 0.0), 1.0)
+
+    def at(self, arc: float) -> tuple[float, float, float, float, float]:
+        """Return gravity along and to the left, curvature, normal force and swing at `arc` [m]."""
+        index, share = self._where(arc)
+        a, b, c, d, e = self.table[index]
+        p, q, r, s, t = self.table[index + 1]
+        return a + share * (p - a), b + share * (q - b), c + share * (r - c), d + share * (s - d), e + share * (t - e)
+
+    def foreseen(self, arc: float) -> tuple[float, float, float]:
+        """Return gravity along and to the left and curvature at `arc` [m], smoothed."""
+        index, share = self._where(arc)
+        a, b, c = self.mean[index]
+        p, q, r = self.mean[index + 1]
+        return a + share * (p - a), b + share * (q - b), c + share * (r - c)
+
+    def taken_by_bumps(self, arc: float) -> float:
+        """Return twice the energy per mass that bumps have taken up to `arc` [m^2/s^2]."""
+        index, share = self._where(arc)
+        return self.taken[index] + share * (self.taken[index + 1] - self.taken[index])
 
     def ride(self) -> Ride:
         """Return the ride to the end of the track, or until the skier stands long enough or sticks."""
@@ -193,7 +210,7 @@ class _Rider:
 
     def acceleration(self, arc: float, speed: float, steering: float, stopping: bool) -> float:
         """Return v' [m/s^2]."""
-        along, left, bend, normal, swing, *_ = self.at(arc)
+        along, left, bend, normal, swing = self.at(arc)
         glide = self.snow.glide_acceleration(along, normal, speed)
         sideways = 1.0 - _smooth_step(arc - self.track.stop_from, 0.0, SKID_FADES) if stopping else 1.0
         if sideways > 0.0:
@@ -211,9 +228,9 @@ class _Rider:
         if math.isinf(self.control.most):
             return 0.0
         ahead = arc + 3.0 * LAG * speed
-        *_, along, left, bend, _ = self.at(ahead)
+        along, left, bend = self.foreseen(ahead)
         most = self.most[min(int(ahead / self.step), self.last)]
-        speed = math.sqrt(max(speed * speed + self.at(arc)[-1], 0.0))
+        speed = math.sqrt(max(speed * speed + self.taken_by_bumps(arc), 0.0))
         glide = self.snow.glide_acceleration(along, STANDARD_GRAVITY, speed)
         brake = glide + (speed - AIM * most) / CONTROL_TIME
         if brake <= 0.0:
