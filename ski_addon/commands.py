@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import atomic, results
+from . import apart, atomic, results
 from .errors import MissingInputError, SkiAddonError, SpecError
 from .spec import PART_KINDS, RunSpec, estimate, find_document
 from .talk import Talk, json_text, summary_lines
@@ -97,10 +97,15 @@ def preview_command(arguments: argparse.Namespace) -> int:
     results.check_blender("the preview")
     spec = _read_spec(arguments.spec, arguments)
     with atomic.output_folder(target.parent):
-        results.preview(spec, target)
+        problem = results.preview(spec, target)
     talk.say(f"wrote {target}")
-    talk.give({target.suffix[1:].replace("png", "picture"): str(target), "spec_hash": spec.content_hash()})
-    return 0
+    made = {target.suffix[1:].replace("png", "picture"): str(target), "spec_hash": spec.content_hash()}
+    if problem is None or apart.is_apart():  # the process that asked for a picture knows of the problem
+        talk.give(made)
+        return 0
+    results.complain(f"{problem}; the motion up to there is in {target}")
+    talk.give({**made, "error": str(problem)})
+    return problem.exit_code
 
 
 def validate_command(arguments: argparse.Namespace) -> int:

@@ -18,6 +18,7 @@ from .errors import (
     MissingLibraryError,
     OutputError,
     SimulationDiverged,
+    SkiAddonError,
     SkierFell,
     one_line,
 )
@@ -198,14 +199,20 @@ def render_strobe(recording: Recording, spec: RunSpec, target: Path, *, stop: bo
         render(recording, spec, target, stop=stop)
 
 
-def preview(spec: RunSpec, target: Path) -> None:
+def preview(spec: RunSpec, target: Path) -> SkiAddonError | None:
     """Write the instant figure of a run: a .blend, or (by the target's suffix) one picture; in a process of its own.
 
-    What is wrong with the run is found out here, before Blender is started.
+    What is wrong with the run is found out here, before Blender is started. Returns what ends the motion before the
+    course does, or None.
     """
-    from .turning.preview import preview_motion
+    from .turning.preview import preview_course
 
-    motion = preview_motion(spec)
+    preview = preview_course(spec)
+    _write_preview(spec, preview.motion, target)
+    return preview.problem
+
+
+def _write_preview(spec: RunSpec, motion: TurningMotion, target: Path) -> None:
     if target.suffix == ".blend" or apart.inside_blender() or apart.is_apart():
         draw_preview(spec, motion, target)
         return

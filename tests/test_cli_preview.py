@@ -94,6 +94,16 @@ def test_bad_input_is_one_line_and_leaves_nothing(drawn, run, tmp_path, argument
     assert not drawn and not (tmp_path / "new").exists()
 
 
+def test_a_rhythm_that_cannot_go_on_is_kept_up_to_there_and_the_place_is_told(drawn, run, tmp_path):
+    steep = ("--set", "rhythm.1.period=0.6", "--set", "rhythm.1.sharpness_deg=50")
+    code, said, error = run("preview", "changing_heading", *steep, "-o", tmp_path, "--json")
+    assert code == 2 and error.count("\n") == 1
+    assert "at rhythm 1 (0." in error and "the motion up to there is in" in error
+    ((_, motion, target),) = drawn
+    assert motion.duration < 1.0 and target.exists()
+    assert json.loads(said)["blend"] == str(target) and "rhythm 1" in json.loads(said)["error"]
+
+
 def test_a_target_that_cannot_be_written_is_named(drawn, run, tmp_path):
     (tmp_path / "file").write_text("")
     code, _, error = run("preview", "paper_main", *SHORT, "-o", tmp_path / "file" / "x.blend")
