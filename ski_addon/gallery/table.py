@@ -46,6 +46,10 @@ PICTURES: dict[str, Picture] = {
     "figure_17": Picture("Slalom turns found by planning", "paths", "draw_gates", (11.0, 1.95)),
     "figure_18": Picture("Round the corner of a street", "paths", "draw_corner", (5.6, 7.0)),
     "photo_5": Picture("Past potholes", "paths", "draw_potholes", (11.0, 2.5)),
+    "section_7_alpine": Picture("An alpine skier through a swing", "poses", "draw_alpine", (11.0, 4.0)),
+    "section_7_telemark": Picture("A telemark skier through a swing", "poses", "draw_telemark", (11.0, 4.0)),
+    "section_7_snowboard": Picture("A snowboarder through a swing", "poses", "draw_snowboard", (11.0, 4.0)),
+    "section_7_bicycle": Picture("A cyclist through a swing", "poses", "draw_bicycle", (11.0, 4.0)),
 }
 """Name of the file without its suffix -> picture, in the paper's order."""
 

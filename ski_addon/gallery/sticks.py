@@ -1,4 +1,4 @@
-"""Stick drawings of turning figures: every body as a few lines, seen from the side and from behind."""
+"""Stick drawings of turning figures: every body as a few lines (left limbs blue, right ones orange)."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..frames import matrix_from_quaternion
+from ..report.style import INK, LEFT, QUIET, RIGHT
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ..animation.poses import BodyPoses
     from ..turning.figures import FigureModel
 
 Line = tuple[np.ndarray, str]
-LEFT, RIGHT, MIDDLE, GEAR = "#c2452d", "#1f6fb2", "#30343a", "#6f767f"
+MIDDLE, GEAR = INK, "#6f767f"
 
 
 def figure_lines(figure: FigureModel, poses: BodyPoses, key: int) -> list[Line]:
@@ -84,26 +87,23 @@ def _bicycle(sizes: dict[str, float], place: dict[str, np.ndarray], at: Any) -> 
     return lines
 
 
-def draw_sheet(figure: FigureModel, poses: BodyPoses, keys: list[int], titles: list[str], frames: np.ndarray) -> Any:
-    """Return a matplotlib figure: one column a key, seen from its left side and from behind in its frame (k, 3, 3)."""
-    from matplotlib.figure import Figure
-
-    sheet = Figure(figsize=(3.0 * len(keys), 6.4), layout="constrained")
-    axes = sheet.subplots(2, len(keys), sharex=True, sharey=True, squeeze=False)
-    for column, (key, title, frame) in enumerate(zip(keys, titles, frames, strict=True)):
-        origin = _stand(figure, poses, key, frame[:, 2])
-        for points, colour in figure_lines(figure, poses, key):
+def draw_sheet(figure: Figure, model: FigureModel, poses: BodyPoses, titles: list[str], frames: np.ndarray) -> None:
+    """Draw all keys of `poses` into a matplotlib figure: a column each, seen from the right and from behind in the
+    key's frame (k, 3, 3).
+    """
+    axes = figure.subplots(2, len(titles), sharex=True, sharey=True, squeeze=False)
+    for column, (title, frame) in enumerate(zip(titles, frames, strict=True)):
+        origin = _stand(model, poses, column, frame[:, 2])
+        for points, colour in figure_lines(model, poses, column):
             local = (points - origin) @ frame
-            axes[0, column].plot(local[:, 0], local[:, 2], color=colour, lw=1.8, solid_capstyle="round")
-            axes[1, column].plot(-local[:, 1], local[:, 2], color=colour, lw=1.8, solid_capstyle="round")
-        axes[0, column].set_title(title, fontsize=10)
+            axes[0, column].plot(local[:, 0], local[:, 2], color=colour, lw=1.6, solid_capstyle="round")
+            axes[1, column].plot(-local[:, 1], local[:, 2], color=colour, lw=1.6, solid_capstyle="round")
+        axes[0, column].set_title(title)
     for axis in axes.flat:
-        axis.axhline(0.0, color="#b8c4cf", lw=0.8, zorder=0)
+        axis.axhline(0.0, color=QUIET, lw=0.8, zorder=0)
         axis.set_aspect("equal")
-        axis.tick_params(labelsize=7)
-    axes[0, 0].set_ylabel("from the right: ahead is right [m]", fontsize=8)
-    axes[1, 0].set_ylabel("from behind: left is left [m]", fontsize=8)
-    return sheet
+    axes[0, 0].set_ylabel("from the right, m")
+    axes[1, 0].set_ylabel("from behind, m")
 
 
 def _stand(figure: FigureModel, poses: BodyPoses, key: int, up: np.ndarray) -> np.ndarray:
