@@ -1,8 +1,9 @@
 """The paper's search beside ours: `python -m benchmarks.path_search` prints the tables of docs/path_following.md.
 
 Both follow the path of each example to its end, or as far as they come, in one run on one core. The plain reading has
-the most obliging of several bounds of the rate of curvature, since its even grid of inputs depends on it. Then both
-plan once from each of the same states, and every example is replanned after an obstacle has been moved.
+the most obliging of several bounds of the rate of curvature, since its even grid of inputs depends on it; both look
+as far ahead as the paper's larger case, 12 stages, and its smaller one, 10. Then both plan once from each of the same
+states, and every example is replanned after an obstacle has been moved.
 """
 
 from __future__ import annotations
@@ -28,11 +29,11 @@ MOVES = (-0.4, 0.4)
 """How far aside the obstacle nearest to the way ahead is moved [m]."""
 
 
-def example(name: str) -> Problem:
-    """Return the problem of a preset."""
+def example(name: str, stages: int = 10) -> Problem:
+    """Return the problem of a preset, planned so many stages ahead."""
     spec = RunSpec.from_toml(find_document(name))
     problem, _ = follow_problem(spec, build_terrain(spec.slope), distinct_points(spec)[0])
-    return replace(problem, settings=replace(problem.settings, inputs=INPUTS))
+    return replace(problem, settings=replace(problem.settings, inputs=INPUTS, stages=stages))
 
 
 @dataclass(frozen=True)
@@ -122,18 +123,23 @@ def from_same_states(problem: Problem, ours: Run) -> tuple[float, float, int, in
 
 def main() -> None:
     """Print the tables."""
-    print("| example | search | reached | nodes a stage | median [ms] | first [ms] | in all [s] | cost [m] |")
-    print("|---|---|---|---|---|---|---|---|")
-    problems = {name: example(name) for name in EXAMPLES}
-    ours = {}
-    for name, problem in problems.items():
-        ours[name], theirs = timed(problem, best_plan), best_plain(problem)
-        print(line(name, "plain reading", theirs), line(name, "ours", ours[name]), sep="\n", flush=True)
-        ratio = np.median(theirs.seconds) / np.median(ours[name].seconds)
-        print(f"| {name} | ratio | | | {ratio:.1f} | | | {ours[name].followed.cost / theirs.followed.cost:.2f} |")
+    ours: dict[str, Run] = {}
+    for stages in (12, 10):
+        print(f"\nPlans of {stages} stages, {INPUTS} inputs:\n")
+        print("| example | search | reached | nodes a stage | median [ms] | first [ms] | in all [s] | cost [m] |")
+        print("|---|---|---|---|---|---|---|---|")
+        for name in EXAMPLES:
+            problem = example(name, stages)
+            ours[name], theirs = timed(problem, best_plan), best_plain(problem)
+            print(line(name, "plain reading", theirs), line(name, "ours", ours[name]), sep="\n", flush=True)
+            ratio = np.median(theirs.seconds) / np.median(ours[name].seconds)
+            in_all = theirs.seconds.sum() / ours[name].seconds.sum()
+            cost = ours[name].followed.cost / theirs.followed.cost
+            print(f"| {name} | ratio | | | {ratio:.1f} | | {in_all:.1f} | {cost:.2f} |")
     print("\n| example | same states: ours [m] | plain [m] | ours no more | moved: replan [ms] | complete |")
     print("|---|---|---|---|---|---|", flush=True)
-    for name, problem in problems.items():
+    for name in EXAMPLES:
+        problem = example(name)
         one, other, cheaper, count = from_same_states(problem, ours[name])
         median, plans, complete = replans(problem, ours[name])
         print(

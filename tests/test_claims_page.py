@@ -19,7 +19,7 @@ def functions() -> set[str]:
 
 
 def test_every_claim_has_a_row_with_a_finding():
-    assert {int(row[0].strip("| ")) for row in ROWS} >= set(range(1, 31)) - {12, 13}
+    assert {int(row[0].strip("| ")) for row in ROWS} >= set(range(1, 31))
     assert all(len(row) == 5 and row[1] and row[3] and row[4].strip("| ") for row in ROWS)
 
 
@@ -29,7 +29,7 @@ def test_every_test_that_the_page_names_is_there():
 
 
 def test_every_test_of_these_claims_is_on_the_page():
-    of_claims = {name for name in functions() if re.match(r"test_claim_(\d|1[014-9]|2\d)_", name)}
+    of_claims = {name for name in functions() if re.match(r"test_claim_(\d|1\d|2\d)_", name)}
     assert of_claims - set(re.findall(r"`(test_\w+)`", PAGE)) == set()
 
 

@@ -12,7 +12,7 @@ from ski_addon.course.follow_problem import LEAST_SPEED, obstacles_of
 from ski_addon.errors import PlanInfeasible, SpecError
 from ski_addon.spec import RunSpec, find_document
 from ski_addon.terrain import build_terrain
-from ski_addon.turning.following import DISC, LINE, POLYGON
+from ski_addon.turning.following import DISC, LINE, POLYGON, body_on, follow
 from ski_addon.turning.preview import preview_course
 
 PATH = ((0, 0), (15, 1), (30, -1), (42, 0))
@@ -138,3 +138,15 @@ def test_claim_13_examples_are_solved_without_a_collision(name):
             x, y = np.asarray(obstacle.points)[0]
             at = np.interp(x, places[:, 0], places[:, 1])
             assert (at - y) * np.sign(y) > 0.29
+
+
+def test_claim_13_longer_plans_may_take_another_way_through_the_trees_at_about_the_same_cost():
+    spec = RunSpec.from_toml(find_document("tree_skiing"))
+    problem = ride_course(spec, build_terrain(spec.slope)).problem
+    ways = []
+    for stages in (10, 12):
+        longer = replace(problem, settings=replace(problem.settings, stages=stages))
+        ways.append(follow(longer, body_on(problem.lane)))
+        places = ways[-1].places
+        assert not ways[-1].reason and not problem.obstacles.hit_by(places[:-1], places[1:]).any()
+    assert ways[0].cost == pytest.approx(ways[1].cost, rel=0.3)

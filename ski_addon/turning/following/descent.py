@@ -64,18 +64,18 @@ def candidates_of(span: BalanceRange, now: Bodies, shares: Array, *, clipped: bo
     problem, count = span.problem, shares.shape[1]
     rates, stages = np.empty_like(shares), []
     bodies = Bodies(np.repeat(now.state, count, 1), np.repeat(now.nearest, count))
-    bad, cost = np.zeros(count, dtype=bool), np.zeros(count)
+    cost = np.zeros(count)
     for index, share in enumerate(shares):
         low, high = span.rates(bodies)
         rates[index] = low + share * (high - low)
         stage = problem.stage(bodies, rates[index])
-        if clipped:
-            bad |= ~(np.abs(stage.states[:, LEAN]) <= problem.settings.lean_bound).all(axis=0)
-            bad |= problem.touched(bodies, stage)
         cost += stage.distance.sum(axis=0)
         stages.append(stage)
         bodies = stage.last
-    cost[bad] = np.inf
+    if clipped:
+        states = np.concatenate((np.repeat(now.state[None], count, 2), *(stage.states for stage in stages)))
+        fell = ~(np.abs(states[:, LEAN]).max(axis=0) <= problem.settings.lean_bound)
+        cost[fell | problem.obstacles.hit_by_tracks(states[:, [X, Y]])] = np.inf
     return Candidates(shares, rates, cost, tuple(stages), len(shares) * count)
 
 
@@ -135,8 +135,7 @@ def _steps(shares: Array, slope: Array, misfit: Array, weight: Array) -> Array:
     weighted = slope * weight[:, None]
     normal, down = slope.T @ weighted, -(weighted.T @ misfit)
     scale = float(np.trace(normal)) / len(shares) + 1e-9
-    found = []
-    for damping in DAMPING:
-        step = np.linalg.solve(normal + damping * scale * np.eye(len(shares)), down)
-        found += [shares + length * step for length in STEPS]
-    return np.clip(np.array(found).T, 0.0, 1.0)
+    damped = normal + scale * DAMPING[:, None, None] * np.eye(len(shares))
+    steps = np.linalg.solve(damped, np.broadcast_to(down[:, None], (len(DAMPING), len(shares), 1)))[..., 0]
+    found = shares + (STEPS[:, None, None] * steps).reshape(-1, len(shares))
+    return np.clip(found.T, 0.0, 1.0)

@@ -73,6 +73,11 @@ class Obstacles:
     def _middle_and_size(self) -> tuple[Array, Array]:
         return 0.5 * (self.begin + self.end), 0.5 * np.linalg.norm(self.end - self.begin, axis=1) + self.reach
 
+    @cached_property
+    def _long(self) -> Array:
+        """Which segments (k,) are more than the centre of a disc."""
+        return np.asarray((self.begin != self.end).any(axis=1))
+
     def near(self, place: Array, distance: float) -> Obstacles:
         """Return the segments of which some part is nearer than `distance` [m] to `place` (2,)."""
         if not len(self):
@@ -98,13 +103,29 @@ class Obstacles:
         track, wall = some._pairs(begin + half, np.hypot(half[:, 0], half[:, 1]))
         hit = np.zeros(len(begin), dtype=bool)
         if len(track):
-            gap = _between(begin[track], end[track], some.begin[wall], some.end[wall])
+            gap = some._gaps(begin[track], end[track], wall)
             hit[track[gap <= some.reach[wall]]] = True
         return hit
 
+    def hit_by_tracks(self, places: Array) -> Array:
+        """Return whether tracks through `places` (s, 2, n) touch any obstacle (n,)."""
+        if not len(self):
+            return np.zeros(places.shape[2], dtype=bool)
+        along = places.transpose(0, 2, 1)
+        hit = self.hit_by(along[:-1].reshape(-1, 2), along[1:].reshape(-1, 2))
+        return np.asarray(hit.reshape(-1, places.shape[2]).any(axis=0))
+
+    def _gaps(self, begin: Array, end: Array, wall: Array) -> Array:
+        """Return the distances (p,) [m] of segments `begin` to `end` (p, 2) from the own ones `wall` (p,), in pairs."""
+        gap = _to_segment(self.begin[wall], begin, end)
+        long = self._long[wall]
+        if long.any():
+            gap[long] = _between(begin[long], end[long], self.begin[wall[long]], self.end[wall[long]])
+        return gap
+
     def _pairs(self, places: Array, distance: Array) -> tuple[Array, Array]:
         """Return indices (p,), (p,) of `places` (n, 2) and of the segments nearer to them than `distance` (n,) [m]."""
-        if (self.begin != self.end).any():
+        if self._long.any():
             return np.nonzero(_to_segments(places, self.begin, self.end) - self.reach <= distance[:, None])  # type: ignore[return-value]
         x, y = places[:, None, 0] - self.begin[:, 0], places[:, None, 1] - self.begin[:, 1]
         return np.nonzero(x * x + y * y <= np.square(distance[:, None] + self.reach))  # type: ignore[return-value]

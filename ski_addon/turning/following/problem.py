@@ -49,11 +49,7 @@ class Problem:
 
     def touched(self, now: Bodies, stage: Stage) -> Array:
         """Return whether the tracks of `stage` from `now` on touch an obstacle (n,)."""
-        if not len(self.obstacles):
-            return np.zeros(len(now.nearest), dtype=bool)
-        places = np.concatenate((now.state[None, :2], stage.states[:, :2])).transpose(0, 2, 1)
-        hit = self.obstacles.hit_by(places[:-1].reshape(-1, 2), places[1:].reshape(-1, 2))
-        return np.asarray(hit.reshape(-1, len(now.nearest)).any(axis=0))
+        return self.obstacles.hit_by_tracks(np.concatenate((now.state[None, :2], stage.states[:, :2])))
 
 
 @dataclass(frozen=True)
@@ -63,7 +59,8 @@ class Plan:
     `rates` (k,) [1/m/s] of k stages, fewer than asked for if `complete` is false: then nothing was found that goes on,
     for the `reason` told. `cost` [m] is the sum of the samples' distances from the path [f_opt]. `states` (s + 1, 6)
     and `nearest` samples of the lane (s + 1,) are those at every sample, the first of them now, `distance` (s + 1,)
-    [m] begins with 0. `shares` (k,) say where in its range each rate is (`BalanceRange`), `nodes` were expanded.
+    [m] begins with 0. `shares` (k,) say where in its range each rate is (`BalanceRange`), `nodes` were expanded, `age`
+    stages were ridden since a search.
     """
 
     rates: Array
@@ -75,6 +72,7 @@ class Plan:
     shares: Array = field(default_factory=lambda: np.zeros(0))
     complete: bool = True
     reason: str = ""
+    age: int = 0
 
     @property
     def places(self) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...frames import Array
-from ..body import TurningBody, support_speed
+from ..body import TurningBody
 from .lane import Lane
 
 X, Y, HEADING, LEAN, LEAN_RATE, CURVATURE = range(6)
@@ -86,12 +86,12 @@ def motion_after(
     halves = np.arange(2 * count + 1)[:, None] * (0.5 * step)
     curve = state[CURVATURE] + halves * rate
     across = _pull_across(state, rate, speed, halves, pull)
-    lean, lean_rate = _leans(body, state, curve, step, speed, normal, across)
-    pace = support_speed(lean, curve, speed, body.leg_length)
+    lean, lean_rate, sine = _leans(body, state, curve, step, speed, normal, across)
+    pace = speed / (1.0 - float(body.leg_length) * curve * sine)  # of the support [VP93 Eq. 21]
     heading = state[HEADING] + _integral(curve * pace, step)
-    x, y = _simpson(pace * np.cos(heading), step), _simpson(pace * np.sin(heading), step)
     states = np.empty((count, *state.shape))
-    states[:, X], states[:, Y] = state[X] + x, state[Y] + y
+    states[:, X] = state[X] + _simpson(pace * np.cos(heading), step)
+    states[:, Y] = state[Y] + _simpson(pace * np.sin(heading), step)
     states[:, HEADING], states[:, LEAN], states[:, LEAN_RATE] = heading[2::2], lean[2::2], lean_rate
     states[:, CURVATURE] = curve[2::2]
     return states
@@ -107,23 +107,46 @@ def _pull_across(state: Array, rate: Array, speed: Array, halves: Array, pull: A
 
 def _leans(
     body: TurningBody, state: Array, curve: Array, step: float, speed: Array, normal: Array, across: Array | None
-) -> tuple[Array, Array]:
-    """Return leans (2 count + 1, n) at every half step and their rates (count, n) at every step."""
-    half, size = 0.5 * step, len(curve) // 2
-    leans, rates = np.empty_like(curve), np.empty_like(curve[:size])
+) -> tuple[Array, Array, Array]:
+    """Return leans (2 count + 1, n) at every half step, their rates (count, n) at every step, and the leans' sines."""
+    half, sixth, size = 0.5 * step, step / 6.0, len(curve) // 2
+    leans, rates, sines = np.empty_like(curve), np.empty_like(curve[:size]), np.empty_like(curve)
     lean, lean_rate = state[LEAN], state[LEAN_RATE]
-    leans[0] = lean
+    pushes = _Pushes(body, curve, speed, normal, across)
     for k in range(size):
-        a, b, c = (0.0, 0.0, 0.0) if across is None else across[2 * k : 2 * k + 3]
-        first = body.lean_acceleration(lean, curve[2 * k], speed, normal, a)
+        leans[2 * k] = lean
+        first = pushes.at(2 * k, lean, sines)
         middle = lean + half * (lean_rate + 0.5 * half * first)
-        second = body.lean_acceleration(middle, curve[2 * k + 1], speed, normal, b)
-        end = lean + step * (lean_rate + half * second)
-        third = body.lean_acceleration(end, curve[2 * k + 2], speed, normal, c)
-        lean = lean + step * (lean_rate + step / 6.0 * (first + 2.0 * second))
-        lean_rate = lean_rate + step / 6.0 * (first + 4.0 * second + third)
-        leans[2 * k + 1], leans[2 * k + 2], rates[k] = middle, lean, lean_rate
-    return leans, rates
+        leans[2 * k + 1] = middle
+        second = pushes.at(2 * k + 1, middle, sines)
+        third = pushes.at(2 * k + 2, lean + step * (lean_rate + half * second), sines)
+        lean = lean + step * (lean_rate + sixth * (first + 2.0 * second))
+        lean_rate = lean_rate + sixth * (first + 4.0 * second + third)
+        rates[k] = lean_rate
+    leans[-1] = lean
+    np.sin(lean, out=sines[-1])
+    return leans, rates, sines
+
+
+class _Pushes:
+    """Accelerations of leans at the moments of a stage: `TurningBody.lean_acceleration` with all that the moments
+    share worked out before.
+    """
+
+    def __init__(self, body: TurningBody, curve: Array, speed: Array, normal: Array, across: Array | None) -> None:
+        effective = 1.0 / float(body.effective_length)
+        self.normal = normal * effective
+        self.across = None if across is None else across * effective
+        self.turn = curve * (np.square(speed) * effective)
+        self.bend = curve * float(body.leg_length)
+
+    def at(self, moment: int, lean: Array, sines: Array) -> Array:
+        """Return the accelerations (n,) [rad/s^2] of `lean` (n,) at a moment; its sines go into row `moment`."""
+        sine, cosine = np.sin(lean, out=sines[moment]), np.cos(lean)
+        steering = self.turn[moment] / (1.0 - self.bend[moment] * sine)
+        if self.across is not None:
+            steering -= self.across[moment]
+        return self.normal * sine - steering * cosine
 
 
 def _simpson(values: Array, step: float) -> Array:

@@ -8,7 +8,7 @@ from ski_addon.turning.following import hermite_path, lane_on_flat, polyline_pat
 from ski_addon.turning.following.desired_path import CLOSEST, FURTHEST
 
 
-def test_a_segment_of_some_metres_has_twelve_samples():
+def test_claim_12_a_segment_of_some_metres_has_twelve_samples():
     assert polyline_path([(0, 0), (4, 0), (4, 3)]).last == 24
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ski_addon.turning.following import between_samples, body_on, follow, lane_on_flat, plain
+from ski_addon.turning.following import best_plan, between_samples, body_on, follow, lane_on_flat, plain
 from ski_addon.turning.following.stepping import CURVATURE, LEAN, LEAN_RATE
 
 from .following_scenes import disc, scene, sine, wall
@@ -17,14 +17,14 @@ def ridden():
     return problem, follow(problem)
 
 
-def test_path_is_followed_to_its_end_past_obstacles(ridden):
+def test_claim_12_path_is_followed_to_its_end_past_obstacles(ridden):
     problem, followed = ridden
     assert followed.reason == "" and followed.nearest[-1] >= problem.lane.path.last
     assert not problem.obstacles.hit_by(followed.places[:-1], followed.places[1:]).any()
     assert followed.cost == pytest.approx(followed.distance.sum()) and followed.distance.mean() < 0.7
 
 
-def test_curvature_is_continuous_within_its_bounds_and_linear_in_every_stage(ridden):
+def test_claim_12_curvature_is_continuous_within_its_bounds_and_linear_in_every_stage(ridden):
     problem, followed = ridden
     curvature = followed.states[:, CURVATURE]
     change = np.diff(curvature)[: 3 * (len(curvature) // 3)].reshape(-1, 3) / 0.1
@@ -75,3 +75,13 @@ def test_the_papers_planner_follows_too():
     problem = scene([(0, 0), (12, 0.5), (24, -0.5)], stages=7, inputs=7)
     followed = follow(problem, planner=plain)
     assert followed.reason == "" and followed.nodes.sum() > 100
+
+
+def test_claim_12_plans_of_the_paper_keep_to_a_path_of_waves():
+    offs = []
+    for planner in (plain, best_plan):
+        followed = follow(sine(stages=8, inputs=7), planner=planner)
+        lean = np.degrees(np.abs(followed.states[:, LEAN])).max()
+        assert not followed.reason and 10.0 < lean <= 30.0
+        offs.append(followed.distance.mean())
+    assert offs[1] < 0.75 * offs[0] and 0.3 < offs[0] < 0.8

@@ -14,7 +14,7 @@ def hit(obstacles: list[Obstacle], begin: tuple[float, float], end: tuple[float,
     return bool(Obstacles.of(obstacles).hit_by(np.array([begin], dtype=float), np.array([end], dtype=float))[0])
 
 
-def test_track_past_a_disc_keeps_radius_and_tolerance():
+def test_claim_12_track_past_a_disc_keeps_radius_and_tolerance():
     assert hit([disc(5, 0, 1.0, 0.5)], (0, 1.49), (10, 1.49))
     assert not hit([disc(5, 0, 1.0, 0.5)], (0, 1.51), (10, 1.51))
 

@@ -17,7 +17,7 @@ def test_simulates_as_the_arrays_do():
     assert plan.complete and plan.cost == pytest.approx(plan.distance.sum(), abs=1e-9)
 
 
-def test_finds_the_best_of_all_plans_of_a_small_grid():
+def test_claim_12_finds_the_best_of_all_plans_of_a_small_grid():
     problem = sine(rate=0.3, obstacles=(disc(12.5, 0.0),), stages=4, inputs=5)
     now, best = body_on(problem.lane), math.inf
     for rates in itertools.product(problem.settings.rates(0.3), repeat=4):
@@ -43,6 +43,15 @@ def test_limit_of_nodes_ends_the_search():
     assert not plan.complete and plan.nodes == 5 and plan.reason == "the limit of nodes was reached"
 
 
-def test_wide_range_of_rates_on_a_coarse_grid_leaves_only_straight_on():
+def test_claim_12_wide_range_of_rates_on_a_coarse_grid_leaves_only_straight_on():
     plan = plain_plan(sine(rate=0.5, stages=10, inputs=5), body_on(sine().lane))
     assert plan.complete and np.abs(plan.rates[:6]).max() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("stages", "inputs", "fewest", "most"), [(10, 5, 250, 700), (10, 7, 1300, 4000), (12, 7, 2100, 7200)]
+)
+def test_claim_12_expands_few_of_all_nodes(stages, inputs, fewest, most):
+    for rate in (0.2, 0.25, 0.3):
+        plan = plain_plan(sine(rate=rate, stages=stages, inputs=inputs), body_on(sine().lane))
+        assert plan.complete and fewest <= plan.nodes <= most < 1e-3 * inputs**stages

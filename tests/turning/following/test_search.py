@@ -5,6 +5,7 @@ import pytest
 
 from ski_addon.turning.following import best_plan, body_on, plain_plan
 from ski_addon.turning.following.balance_range import BalanceRange
+from ski_addon.turning.following.dominance import still_to_come
 from ski_addon.turning.following.problem import rolled_out
 from ski_addon.turning.following.stepping import CURVATURE, LEAN, Bodies
 
@@ -88,3 +89,33 @@ def test_blocked_way_gives_the_furthest_plan_and_names_what_stops_it():
     plan = best_plan(problem, body_on(problem.lane))
     assert not plan.complete and 4 <= len(plan.rates) < 10 and plan.cost == np.inf
     assert plan.reason.startswith("fence is in the way at x = 15.")
+
+
+def test_way_back_to_the_path_is_never_overestimated():
+    """Whatever a body does next adds at least what `still_to_come` says, which is worth something far from the path."""
+    problem, random = scene([(0, 0), (60, 0)]), np.random.default_rng(3)
+    span, one = BalanceRange.of(problem), body_on(problem.lane)
+    bodies = Bodies(np.repeat(one.state, 400, 1), np.repeat(one.nearest, 400))
+    for _ in range(3):
+        low, high = span.rates(bodies)
+        bodies = problem.stage(bodies, low + random.uniform(0, 1, 400) * (high - low)).last
+    least, added = still_to_come(problem, bodies, 6), np.zeros(400)
+    for _ in range(2):
+        low, high = span.rates(bodies)
+        stage = problem.stage(bodies, low + random.uniform(0, 1, 400) * (high - low))
+        bodies, added = stage.last, added + stage.distance.sum(axis=0)
+    assert (least <= added + 1e-9).all() and np.percentile(least / added, 90) > 0.2
+
+
+def test_search_is_made_again_after_some_stages_and_where_the_plan_is_blocked():
+    problem, now = sine(), body_on(sine().lane)
+    ages, plan = [], None
+    for _ in range(9):
+        plan = best_plan(problem, now, plan)
+        ages.append(plan.age)
+        now = plan.at(3)
+    assert ages[0] == 0 and max(ages) == 2 and ages.count(0) >= 2
+    fresh = best_plan(problem, now, plan)
+    x, y = fresh.places[15]
+    walled = problem.with_obstacles([wall((x, y - 0.8), (x, y + 0.8))])
+    assert best_plan(walled, now, plan).complete
