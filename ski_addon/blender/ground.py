@@ -13,6 +13,7 @@ from ..terrain import build_terrain
 from .bake import scene_rate
 from .channels import MARK as BAKED
 from .gates import bake_gates, build_gates
+from .obstacles import build_obstacles
 from .ride import Ride, recorded_ride
 from .ski_tracks import build_traces
 from .slope import build_slope
@@ -61,6 +62,7 @@ def renew_ground(
         swings = swings_of(ride, spec, terrain)
         bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start)
         made += [obj for objects in gates for obj in objects]
+    made += build_obstacles(spec, terrain, collection, snow=ride.on_snow)
     for obj in made:
         obj[MARK] = True
     return collection

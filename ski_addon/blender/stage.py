@@ -15,6 +15,7 @@ from ..spec import RunSpec
 from ..terrain import Terrain, build_terrain
 from .gates import build_gates
 from .light import build_sky, build_sun
+from .obstacles import build_obstacles
 from .ride import Ride, recorded_ride
 from .scenery import build_mountains, build_trees
 from .ski_tracks import build_traces
@@ -78,6 +79,8 @@ def stage_ride(
     build_slope(terrain, track, add_collection(scene, "Slope"), snow=ride.on_snow)
     build_traces(ride.traces, terrain, add_collection(scene, "Ski tracks" if ride.on_snow else "Tyre lines"))
     gates = build_gates(spec, terrain, add_collection(scene, "Gates")) if spec.course.kind == "gates" else []
+    if spec.course.kind == "follow":
+        build_obstacles(spec, terrain, add_collection(scene, "Obstacles"), snow=ride.on_snow)
     scenery = add_collection(scene, "Scenery")
     if trees:
         build_trees(terrain, track, scenery, snow=ride.on_snow)

@@ -18,6 +18,8 @@ TURNS_SHOWN = 2.0
 """Turns a picture of turns shows: from the apex of one to that of the next but one."""
 SHORT_TURNS_SHOWN = 3.0
 """Turns round moguls and slalom gates follow each other closely."""
+RHYTHM_SHOWN = 4.0
+"""Swings of a rhythm are many and quick."""
 WAVES_SHOWN = 1.1
 """Waves of bumps a picture shows, from trough to crest and on."""
 FOLLOWED = 45.0
@@ -61,6 +63,8 @@ def choose_view(timeline: Timeline, spec: RunSpec, instants: int, *, stop: bool 
     if course.kind == "bumps":
         times = turn_times(timeline, instants, SHORT_TURNS_SHOWN)
         return View(times, 28.0, 17.0, sun_deg=95.0, sun_height_deg=14.0, lens=45.0, headroom=1.0)
+    if course.kind == "rhythm":
+        return View(turn_times(timeline, instants, RHYTHM_SHOWN), -22.0, 20.0, headroom=3.0)
     if course.kind == "follow":  # from above, over what is gone round
         times = middle_times(timeline, instants, FOLLOWED)
         return View(times, 24.0, 27.0, sun_deg=100.0, sun_height_deg=32.0, lens=40.0, headroom=1.5)
