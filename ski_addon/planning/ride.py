@@ -156,8 +156,8 @@ class _Rider:
     def _where(self, arc: float) -> tuple[int, float]:
         """Return the row of the tables before `arc` [m], and the share of the way to the next."""
         where = arc / self.step
-        index = min(max(int(where), 0), self.last)
-        return index, min(max(where - index, 0.0), 1.0)
+        index = int(where)
+        return (index, where - index) if index <= self.last else (self.last, 1.0)
 
     def at(self, arc: float) -> tuple[float, float, float, float, float]:
         """Return gravity along and to the left, curvature, normal force and swing at `arc` [m]."""
