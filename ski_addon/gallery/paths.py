@@ -30,7 +30,7 @@ def draw_trees(figure: Figure) -> None:
         followed = ridden(problem, stages)
         cost = f"{followed.cost:.0f} m of distance"
         _draw_track(axes, followed, colour, f"plans of {stages} stages, {cost}")
-    axes.set_title("Between trees: plans that look further ahead need not go the same way")
+    axes.set_title("Between trees, with plans of 3 s and of 3.6 s")
     _finish(axes, problem)
 
 

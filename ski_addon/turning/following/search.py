@@ -6,7 +6,7 @@ much. Different is what it tries, and in which order:
 - Inputs are spread over the range that leaves the body a way to stay up (`BalanceRange`), so that no node is doomed.
 - A layer is expanded at once. Of nodes in nearly the same state only the cheapest goes on (`cells`).
 - The plan of the stage before, shifted by one stage and descended (`descend`) between the inputs of the grid, is the
-  new plan as long as it is clear and nothing new comes into its way; every third stage, and where it is not, the
+  new plan as long as it is clear and nothing new comes into its way; every fourth stage, and where it is not, the
   search looks for another way.
 - Its cost bounds that search. So does the way back to the path that a body has before it (`still_to_come`).
 """
@@ -30,7 +30,7 @@ SLACK = 1.05, 0.2
 """A node is clipped beyond this multiple of the bound plus these metres: descent may still make it the best."""
 ROUNDS_COLD, ROUNDS_WARM = 3, 1
 """Rounds of descent without and with a plan of the stage before."""
-WIDE_EVERY = 3
+WIDE_EVERY = 4
 """The plan before is only descended, without a search, for so many stages less one, as long as it is clear."""
 DEARER = 1.2, 1.0
 """A search is made at once where the plan costs this multiple of the one before plus these metres: something new is

@@ -114,8 +114,8 @@ def test_search_is_made_again_after_some_stages_and_where_the_plan_is_blocked():
         plan = best_plan(problem, now, plan)
         ages.append(plan.age)
         now = plan.at(3)
-    assert ages[0] == 0 and max(ages) == 2 and ages.count(0) >= 2
+    assert ages[0] == 0 and max(ages) == 3 and ages.count(0) >= 2
     fresh = best_plan(problem, now, plan)
-    x, y = fresh.places[15]
-    walled = problem.with_obstacles([wall((x, y - 0.8), (x, y + 0.8))])
+    x, y = fresh.places[22]
+    walled = problem.with_obstacles([wall((x, y - 0.5), (x, y + 0.5))])
     assert best_plan(walled, now, plan).complete
