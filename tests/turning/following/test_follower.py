@@ -85,3 +85,19 @@ def test_claim_12_plans_of_the_paper_keep_to_a_path_of_waves():
         assert not followed.reason and 10.0 < lean <= 30.0
         offs.append(followed.distance.mean())
     assert offs[1] < 0.75 * offs[0] and 0.3 < offs[0] < 0.8
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ways_through_random_trees_and_past_random_gates_are_found(seed):
+    random = np.random.default_rng(seed)
+    trees = [disc(x, random.uniform(-4, 4), 0.3, 0.5) for x in np.arange(12, 75, random.uniform(2, 3))]
+    gates, x = [], 16.0
+    for side in (1, -1, 1, -1, 1, -1):
+        gap = random.uniform(0.3, 1.0)
+        gates.append(wall((x, -side * gap), (x, side * 12)))
+        x += random.uniform(8.5, 12)
+    bends = [(0, 0), *((x, random.uniform(-2, 2)) for x in (20, 40, 60)), (80, 0)]
+    for points, obstacles in ((bends, trees), ([(x, 0) for x in range(0, 81, 20)], gates)):
+        problem = scene(points, tuple(obstacles), rate=0.35)
+        followed = follow(problem)
+        assert not followed.reason and not problem.obstacles.hit_by(followed.places[:-1], followed.places[1:]).any()
