@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import PlanInfeasible
 from ..spec import RunSpec
 from ..terrain import Terrain
-from ..turning.following import Followed, Obstacles, Problem, between_samples, body_on, follow
+from ..turning.following import Followed, Obstacles, Problem, between_samples, body_on, follow_to_the_end
 from ..turning.following.stepping import HEADING, LEAN, Bodies, X, Y
 from .drawn_points import CLIMB_MAX, DRAWN_CLIMB_MAX, check_climb, check_inside, distinct_points
 from .follow_problem import LEAST_SPEED, WITHIN, follow_problem, obstacles_of, standing_lean
@@ -64,7 +64,7 @@ def ride_course(spec: RunSpec, terrain: Terrain) -> CourseRide:
     path = problem.lane.path
     check_inside(path.places[: path.last + 1], points, number, terrain)
     start, lead_states, lead_speed = _start(problem, speed)
-    followed = follow(problem, start)
+    followed = follow_to_the_end(problem, start)
     time, states, pace = between_samples(problem, followed, _RATE)
     states, pace = np.concatenate((lead_states, states)), np.concatenate((lead_speed, pace))
     step = float(time[1]) if len(time) > 1 else 1.0 / _RATE

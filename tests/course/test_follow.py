@@ -102,7 +102,7 @@ def test_preview_of_an_open_course_is_the_followed_motion():
     ],
 )
 def test_impossible_obstacles_are_refused_before_any_search(obstacle, words, monkeypatch):
-    monkeypatch.setattr("ski_addon.course.follow.follow", None)
+    monkeypatch.setattr("ski_addon.course.follow.follow_to_the_end", None)
     assert words in refused(course(obstacle))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .desired_path import DesiredPath, hermite_path, polyline_path
-from .follower import Followed, between_samples, follow, plain
+from .follower import Followed, between_samples, follow, follow_to_the_end, plain
 from .lane import Lane, lane_on_flat, lane_with
 from .obstacles import DISC, LINE, POLYGON, Obstacle, Obstacles
 from .plain_search import plain_plan
@@ -29,6 +29,7 @@ __all__ = [
     "between_samples",
     "body_on",
     "follow",
+    "follow_to_the_end",
     "hermite_path",
     "lane_on_flat",
     "lane_with",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from .plain_search import plain_plan
 from .problem import Plan, Problem
 from .search import best_plan
 from .stepping import Bodies, body_on, ridden
+
+MORE_STAGES = 0, 3
+"""How many stages further the second and third attempt look ahead."""
 
 Planner = Callable[[Problem, Bodies, Plan | None], Plan]
 """From a problem, where the body is and the plan before to the plan from here on."""
@@ -89,6 +93,21 @@ def follow(problem: Problem, start: Bodies | None = None, planner: Planner = bes
     time = settings.sample_time * np.arange(end)
     taken = np.array(rates[: -(-(end - 1) // settings.samples)], dtype=float)
     return Followed(time, every, reached[:end], apart, taken, np.array(nodes), reason)
+
+
+def follow_to_the_end(problem: Problem, start: Bodies | None = None) -> Followed:
+    """Return how a body follows the path of `problem`, as `follow` does.
+
+    Where that ends early it is tried again with a search at every stage, then with plans that look further ahead; the
+    first that comes to the end is returned, or the one that comes furthest.
+    """
+    found = [follow(problem, start)]
+    for more in MORE_STAGES:
+        if not found[-1].reason:
+            return found[-1]
+        longer = replace(problem, settings=replace(problem.settings, stages=problem.settings.stages + more))
+        found.append(follow(longer, start, partial(best_plan, every=1)))
+    return max(found, key=lambda followed: (not followed.reason, followed.nearest[-1]))
 
 
 def _turned_back(problem: Problem, furthest: int) -> str:

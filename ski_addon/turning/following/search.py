@@ -59,8 +59,11 @@ class _Layer:
         return _Layer(self.bodies.some(index), self.cost[index], self.parent[index], self.share[index])
 
 
-def best_plan(problem: Problem, now: Bodies, before: Plan | None = None) -> Plan:
-    """Return the best plan found from `now` (one body); `before` is the one of which the first stage was ridden."""
+def best_plan(problem: Problem, now: Bodies, before: Plan | None = None, every: int = WIDE_EVERY) -> Plan:
+    """Return the best plan found from `now` (one body); `before` is the one of which the first stage was ridden.
+
+    A search is made `every` so many stages at least.
+    """
     problem = problem.ahead(now)
     span = BalanceRange.of(problem)
     seed = _continued(span, now, before)
@@ -68,7 +71,7 @@ def best_plan(problem: Problem, now: Bodies, before: Plan | None = None) -> Plan
     if before is None or known is None:
         return _searched(span, now, [np.inf], None, ROUNDS_COLD)
     cost = float(known.cost[0])
-    if before.age + 1 < WIDE_EVERY and cost < DEARER[0] * before.cost + DEARER[1]:
+    if before.age + 1 < every and cost < DEARER[0] * before.cost + DEARER[1]:
         return replace(known.plan(0, now, known.nodes), age=before.age + 1)
     if np.isfinite(cost):
         return _searched(span, now, [SLACK[0] * cost + SLACK[1]], known, ROUNDS_WARM)

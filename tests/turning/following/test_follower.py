@@ -5,7 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ski_addon.turning.following import best_plan, between_samples, body_on, follow, lane_on_flat, plain
+from ski_addon.turning.following import (
+    best_plan,
+    between_samples,
+    body_on,
+    follow,
+    follow_to_the_end,
+    lane_on_flat,
+    plain,
+)
 from ski_addon.turning.following.stepping import CURVATURE, LEAN, LEAN_RATE
 
 from .following_scenes import disc, scene, sine, wall
@@ -99,5 +107,11 @@ def test_ways_through_random_trees_and_past_random_gates_are_found(seed):
     bends = [(0, 0), *((x, random.uniform(-2, 2)) for x in (20, 40, 60)), (80, 0)]
     for points, obstacles in ((bends, trees), ([(x, 0) for x in range(0, 81, 20)], gates)):
         problem = scene(points, tuple(obstacles), rate=0.35)
-        followed = follow(problem)
+        followed = follow_to_the_end(problem)
         assert not followed.reason and not problem.obstacles.hit_by(followed.places[:-1], followed.places[1:]).any()
+
+
+def test_what_stops_a_body_for_good_is_found_once_and_told():
+    problem = scene([(0, 0), (60, 0)], (wall((30, -90), (30, 90)),))
+    followed, once = follow_to_the_end(problem), follow(problem)
+    assert "wall is in the way" in followed.reason and followed.nearest[-1] >= once.nearest[-1]
