@@ -41,7 +41,7 @@ class HeightGrid:
         (nx, ny), (dx, dy), (x0, y0) = z.shape, self.spacing, self.origin
         self.extent: Extent = (x0, x0 + (nx - 1) * dx, y0, y0 + (ny - 1) * dy)
         x = x0 + dx * np.arange(nx)
-        fall, self.altitude = _mean_line(x, z.mean(axis=1))
+        fall, self.altitude = mean_line(x, z.mean(axis=1))
         z -= (self.altitude - fall * x)[:, None]
         if smoothing > 0.0:
             z = _smoothed(z, smoothing, self.spacing)
@@ -97,8 +97,8 @@ class HeightGrid:
         return up, along, np.where(known, across * j_slope / dy, math.nan)
 
 
-def _mean_line(x: np.ndarray, z: np.ndarray) -> tuple[float, float]:
-    """Return by how much the best line through `z` (n,) over `x` (n,) falls per metre, and its height at x = 0."""
+def mean_line(x: np.ndarray, z: np.ndarray) -> tuple[float, float]:
+    """Return by how much the best line through `z` (n,) [m] over `x` (n,) [m] falls per metre, and its z at x = 0."""
     centre = float(x.mean())
     fall = -float(np.dot(x - centre, z) / np.dot(x - centre, x - centre))
     return fall, float(z.mean()) + fall * centre
