@@ -71,10 +71,10 @@ def renew_ground(
 def _clear(collection: bpy.types.Collection) -> None:
     """Remove what an earlier bake put into `collection` and those within it."""
     for obj in [obj for obj in collection.all_objects if obj.get(MARK)]:
-        mesh, action = obj.data, obj.animation_data.action if obj.animation_data else None
+        data, action = obj.data, obj.animation_data.action if obj.animation_data else None
         bpy.data.objects.remove(obj)
-        if mesh.users == 0:
-            bpy.data.meshes.remove(mesh)
+        if data is not None and data.users == 0:
+            bpy.data.batch_remove([data])  # a mesh, or the curve of a track
         if action is not None and action.users == 0 and action.get(BAKED):
             bpy.data.actions.remove(action)
 

@@ -23,6 +23,8 @@ SPACING = 0.10
 """Distance between cross sections [m]."""
 CARVES = np.deg2rad(4.0)
 """A ski that points this little beside its way still carves [rad]."""
+EDGED_NARROWS = 0.35
+"""Share of its width that a groove loses under a ski that is edged well."""
 TYRE_LINE_RISE = 0.004
 """How far a wheel's line lies over the ground [m]."""
 # across the track, in half widths of the ski; height [m]; how much of the height grows with edging
@@ -82,15 +84,10 @@ def groove_vertices(
     `left` (m, 3) points across the ski and `edge` (m,) [rad] is its edge angle: an edged ski cuts a narrower groove on
     the edge's side and pushes up more snow. A ski that points elsewhere than it goes leaves a band.
     """
-    normal = terrain.normal(place[:, 0], place[:, 1])
-    ski_left = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
-    across = _across_the_way(place, normal, ski_left)
-    turned = np.arccos(np.clip(np.sum(across * ski_left, axis=1), 0.0, 1.0))
-    skid = _smooth(np.sin(np.maximum(turned - CARVES, 0.0)))
-    lean = np.clip(np.abs(edge) / np.deg2rad(30.0), 0.0, 1.0)
+    normal, across, lean, skid = _lie(place, left, edge, terrain)
     shift = np.sign(edge) * lean * 0.5 * half_width
     rough = _roughness(len(place), seed)
-    width = half_width * (1.0 - 0.35 * lean)
+    width = half_width * (1.0 - EDGED_NARROWS * lean)
     rows = []
     for column, (share, height, grows) in enumerate(_PROFILE):
         side = shift + share * width + np.sign(share) * skid * half_length
@@ -99,6 +96,16 @@ def groove_vertices(
         rise = height * (1.0 + grows * (lean - 0.4)) * np.where(grows > 0, rough[:, column], 1.0)
         rows.append(point + rise[:, None] * normal)
     return np.stack(rows, axis=1)
+
+
+def _lie(place: Array, left: Array, edge: Array, terrain: Terrain) -> tuple[Array, Array, Array, Array]:
+    """Return normals (m, 3), unit vectors across the way (m, 3), leans 0..1 (m,) and sines of the skid angles (m,)."""
+    normal = terrain.normal(place[:, 0], place[:, 1])
+    ski_left = normalized(left - np.sum(left * normal, axis=1, keepdims=True) * normal)
+    across = _across_the_way(place, normal, ski_left)
+    turned = np.arccos(np.clip(np.sum(across * ski_left, axis=1), 0.0, 1.0))
+    skid = _smooth(np.sin(np.maximum(turned - CARVES, 0.0)))
+    return normal, across, np.clip(np.abs(edge) / np.deg2rad(30.0), 0.0, 1.0), skid
 
 
 def _across_the_way(place: Array, normal: Array, ski_left: Array) -> Array:
@@ -132,6 +139,36 @@ def build_ski_tracks(
 def build_traces(traces: list[Trace], terrain: Terrain, collection: bpy.types.Collection) -> list[bpy.types.Object]:
     """Return a new mesh for each of `traces` on `terrain`."""
     return [(_groove if trace.half_length else _line)(trace, terrain, collection) for trace in traces]
+
+
+def build_track_curves(
+    traces: list[Trace], terrain: Terrain, collection: bpy.types.Collection
+) -> list[bpy.types.Object]:
+    """Return a new curve for each of `traces` that lies on `terrain`, for geometry nodes and other uses of one's own.
+
+    It has a point each `SPACING` along the way, whose radius [m] is half the width of the track there, a skid's band
+    included: a bevel depth of 1 m gives a tube as wide as the track. The curve's normals look up.
+    """
+    return [_curve(trace, terrain, collection) for trace in traces]
+
+
+def _curve(trace: Trace, terrain: Terrain, collection: bpy.types.Collection) -> bpy.types.Object:
+    data = bpy.data.curves.new(f"{trace.name} curve", "CURVE")
+    data.dimensions, data.twist_mode = "3D", "Z_UP"
+    count = len(trace.place)
+    if count > 0:
+        _, _, lean, skid = _lie(trace.place, trace.left, trace.edge, terrain)
+        points = np.ones((count, 4), dtype=np.float32)
+        points[:, :2] = trace.place[:, :2]
+        points[:, 2] = terrain.height(trace.place[:, 0], trace.place[:, 1])
+        radius = trace.half_width * (1.0 - EDGED_NARROWS * lean) + skid * trace.half_length
+        spline = data.splines.new("POLY")
+        spline.points.add(count - 1)  # a new spline has one
+        spline.points.foreach_set("co", points.ravel())
+        spline.points.foreach_set("radius", radius.astype(np.float32))
+    obj = bpy.data.objects.new(data.name, data)
+    collection.objects.link(obj)
+    return obj
 
 
 def _groove(trace: Trace, terrain: Terrain, collection: bpy.types.Collection) -> bpy.types.Object:
