@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 CARVED = 0.1
 """A carving edge throws up as much as one that slips sideways at this share of the speed at which it cuts the snow."""
-FULL = 3.0
+FULL = 2.0
 """Snow thrown by a body's weight that slips at this speed [m/s] is a strength of 63 %."""
 SIDE_HELD = np.deg2rad(3.0)
 """Skis edged by less [rad] have no outside; the one of before keeps being it."""

@@ -131,7 +131,7 @@ def _sampled(view: _View, lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
     if (place := _layered(top, bottom)) is not None:
         i, j, apart = place
         problem = f"has two surfaces over each other, {apart:.2g} m apart, at {view.shown(lattice, i, j, top[i, j])}"
-        hint = "keep the upper one only: move trees, roofs and rocks to objects of their own"
+        hint = "keep the upper one, and move trees, roofs and rocks to objects of their own"
         raise SpecError(view.name, None, "", hint, problem=problem)
     if (place := _layered(under, np.where(np.isfinite(under), top, np.inf))) is not None:
         i, j, _ = place

@@ -190,7 +190,7 @@ def test_vertices_that_are_no_numbers_are_refused(core, tools, add) -> None:
 def test_an_overhang_is_refused_with_its_place_in_the_world(core, tools, add) -> None:
     roof = np.array([[[40.0, -8.0, 95.0], [60.0, -8.0, 95.0], [50.0, 8.0, 95.0]]])
     shown = refused(tools, core, add(np.concatenate((sheet(hill), roof)), location=(0.0, 0.0, 100.0)))
-    assert shown.startswith("has two surfaces over each other, ") and ", 195.0): keep the upper one only" in shown
+    assert shown.startswith("has two surfaces over each other, ") and ", 195.0): keep the upper one, and move" in shown
 
 
 def test_a_start_beside_the_mesh_is_refused(core, tools, add) -> None:
