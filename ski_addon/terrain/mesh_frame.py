@@ -18,8 +18,8 @@ SAMPLES_MOST, ASKED_MOST = 1_000_000, 4_000_000
 """How many samples a ground gets by itself, and if a spacing is asked for."""
 FINEST, COARSEST = 0.25, 2.0
 """Bounds of the spacing [m] that fits the faces of a mesh."""
-NEAR = 40.0
-"""How far round a given start [m] a mesh says which way it falls."""
+SPREAD = 15.0
+"""How far round a given start [m] (the standard deviation of a Gaussian) a mesh says which way it falls."""
 _UPRIGHT = 0.02
 """Cosine of the tilt from which on a face is a wall, and no ground."""
 
@@ -68,7 +68,7 @@ def fall_heading(faces: Faces, name: str, start: np.ndarray | None, heading: flo
     """Return the direction [rad, from the world's x axis to the left] in which the ground falls, or `heading` if given.
 
     That is the steepest way down the plane that fits all faces best, each weighted by its area as seen from above; with
-    a `start` (2,) [m, world], of the faces within `NEAR` of it, if these fall. Raises `SpecError` for a mesh that is
+    a `start` (2,) [m, world], of the faces round it, unless these are flat. Raises `SpecError` for a mesh that is
     flat, unless `heading` is given, or steeper than 45 degrees.
     """
     triangles, area = faces.ground
@@ -76,8 +76,8 @@ def fall_heading(faces: Faces, name: str, start: np.ndarray | None, heading: flo
     weight = np.repeat(area / 3.0, 3)
     gradient = _gradient(middles, weight)
     if start is not None:
-        close = np.hypot(*(middles[:, :2] - start).T) < NEAR
-        nearby = _gradient(middles[close], weight[close])
+        away = np.sum(np.square(middles[:, :2] - start), axis=1) / SPREAD**2
+        nearby = _gradient(middles, weight * np.exp(-0.5 * away))
         if math.atan(math.hypot(*nearby)) >= FLATTEST:
             gradient = nearby
     tilt = math.atan(math.hypot(*gradient))
@@ -96,7 +96,7 @@ def fall_heading(faces: Faces, name: str, start: np.ndarray | None, heading: flo
 
 def _gradient(points: np.ndarray, weight: np.ndarray) -> tuple[float, float]:
     """Return dz/dx and dz/dy of the plane that fits `points` (n, 3) best; 0, 0 if they do not tell."""
-    if len(points) < 3:
+    if not weight.sum() > 1e-200:
         return 0.0, 0.0
     over = points - np.average(points, axis=0, weights=weight)
     square = np.einsum("n,ni,nj->ij", weight, over, over)

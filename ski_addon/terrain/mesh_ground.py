@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,13 +14,12 @@ from .fill import filled
 from .grid import mean_line
 from .grid_checks import checked_steps, checked_tilt
 from .mesh_frame import Faces, check_size, checked_faces, chosen_resolution, fall_heading, turned
+from .mesh_start import rows_used, upper_end
 from .raster import Lattice, surface_heights
 from .sampled_ground import MeshGround
 
-BEHIND = 30.0
+BEHIND = 10.0
 """How much of a mesh is kept uphill of a given start [m]."""
-START_IN, START_WIDTH = 5.0, 6.0
-"""A run starts this far in from the upper end, which begins where the mesh is this wide [m]."""
 LAYERS = 0.10
 """Surfaces that lie over each other by more than this are two [m]; below it the upper one counts."""
 
@@ -58,9 +57,10 @@ def mesh_ground(
     """Return the ground that `triangles` (n, 3, 3) [m, world] make, seen from above; counter-clockwise ones look up.
 
     `start` is a point of the world (x and y [m] count); without it the run starts at the upper end, in the middle. With
-    it the ground reaches `BEHIND` uphill of it. `heading` [rad, from the world's x to the left] is the way downhill;
-    without it the mesh tells (see `fall_heading`). `resolution` [m] is the distance between samples. `name` is what
-    errors call the mesh. Raises `SpecError` for a mesh that makes no ground, with what to do.
+    it the ground reaches `BEHIND` uphill of it. Beyond a valley it ends (see `rows_used`). `heading` [rad, from the
+    world's x to the left] is the way downhill; without it the mesh tells (see `fall_heading`). `resolution` [m] is the
+    distance between samples. `name` is what errors call the mesh. Raises `SpecError` for a mesh that makes no ground,
+    with what to do.
     """
     view = _view(np.asarray(triangles, dtype=float), name, start, heading)
     begin = None if start is None else view.from_world(_checked_start(start, name))
@@ -69,8 +69,10 @@ def mesh_ground(
     lattice = _lattice(view, begin, resolution)
     z, covered = _sampled(view, lattice)
     if begin is None:
-        begin = _upper_end(covered, lattice, name)
+        begin = upper_end(covered, lattice, name)
     z_start = _height_at(view, begin)
+    rows = rows_used(z, covered, lattice, begin)
+    z, covered, lattice = z[:rows], covered[:rows], replace(lattice, shape=(rows, lattice.shape[1]))
     heights = _completed(z - z_start, covered)
     x, y = (float(low - at) for low, at in zip(lattice.low, begin, strict=True))
     altitude = _altitude(view, lattice, heights, x, z_start)
@@ -154,29 +156,6 @@ def _layered(top: np.ndarray, bottom: np.ndarray) -> tuple[int, int, float] | No
     square = np.minimum(np.minimum(apart[:-1, :-1], apart[1:, :-1]), np.minimum(apart[:-1, 1:], apart[1:, 1:]))
     i, j = (int(k) for k in np.unravel_index(int(np.argmax(square)), square.shape))
     return (i, j, float(square[i, j])) if square[i, j] > LAYERS else None
-
-
-def _upper_end(covered: np.ndarray, lattice: Lattice, name: str) -> np.ndarray:
-    """Return where a run starts by itself (2,) [m]: in from the upper end of the mesh, in the middle of it there."""
-    inward = max(1, round(min(START_IN, 0.25 * lattice.step * lattice.shape[0]) / lattice.step))
-    begin, end = np.array([_longest_run(row) for row in covered]).T
-    wide = end - begin >= min(START_WIDTH / lattice.step, 0.5 * np.max(end - begin))
-    fit = np.flatnonzero(wide[:-inward] & wide[inward:])
-    if len(fit) == 0:
-        problem = "is not found: the mesh is full of holes"
-        raise SpecError(f"{name} start", None, "", "give a start on the mesh", problem=problem)
-    i = int(fit[0]) + inward
-    return np.array(lattice.low) + lattice.step * np.array((i, 0.5 * (begin[i] + end[i] - 1)))
-
-
-def _longest_run(row: np.ndarray) -> tuple[int, int]:
-    """Return from where to before where the longest run of true values in `row` (n,) lasts."""
-    change = np.diff(np.concatenate(([0], row.astype(np.int8), [0])))
-    begins, ends = np.flatnonzero(change == 1), np.flatnonzero(change == -1)
-    if len(begins) == 0:
-        return 0, 0
-    longest = int(np.argmax(ends - begins))
-    return int(begins[longest]), int(ends[longest])
 
 
 def _height_at(view: _View, place: np.ndarray) -> float:

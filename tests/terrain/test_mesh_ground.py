@@ -119,6 +119,33 @@ def test_a_round_hill_is_skied_down_from_where_one_starts():
         assert ground.covers(0.0, 0.0)
 
 
+def test_from_beside_a_ridge_one_skis_down_that_side():
+    mesh = sheet(lambda x, y: -0.3 * abs(y), 120.0, 120.0)
+    for y, way in ((3.0, 1.0), (-20.0, -1.0)):
+        ground = mesh_ground(mesh, NAME, (60.0, y))
+        np.testing.assert_allclose(ground.world_from_run[:2, 0], (0.0, way), atol=0.01)
+
+
+def test_bumps_round_a_start_do_not_turn_the_run():
+    mesh = sheet(lambda x, y: -0.2 * x + 0.3 * np.sin(0.4 * x) * np.sin(0.5 * y))
+    for start in ((30.0, 0.0), (47.0, 8.0), (61.0, -11.0)):
+        np.testing.assert_allclose(mesh_ground(mesh, NAME, start).world_from_run[:2, 0], (1.0, 0.0), atol=0.02)
+
+
+def test_ground_ends_beyond_a_valley():
+    mesh = sheet(lambda x, y: 0.15 * np.sqrt((x - 100.0) ** 2 + 9.0), 200.0, 60.0)
+    ground = mesh_ground(mesh, NAME, (20.0, 0.0))
+    assert ground.origin[0] + ground.size[0] == pytest.approx(80.0 + 30.0, abs=1.0)
+    assert ground.terrain().mean_angle > math.radians(4.0)
+    whole = mesh_ground(mesh - 0.3 * mesh[..., :1] * (0, 0, 1), NAME, (20.0, 0.0))
+    assert whole.size[0] > 188.0
+
+
+def test_a_mesh_full_of_holes_has_no_start():
+    mesh = sheet(lambda x, y: -0.2 * x, keep=lambda x, y: (x < 1) | (x > 119))
+    assert line_of(mesh, NAME).startswith(f"{NAME} start is not found: the mesh is full of holes: give a start on")
+
+
 def test_beyond_a_mesh_that_is_no_rectangle_nothing_is_covered():
     mesh = sheet(hill, keep=lambda x, y: np.hypot((x - 60) / 60, y / 30) < 1.0)
     ground = mesh_ground(mesh, NAME)
