@@ -40,12 +40,13 @@ def shown_name(obj: bpy.types.Object) -> str:
 def world_triangles(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Array:
     """Return the evaluated triangles (n, 3, 3) [m, world] of `obj`, counter-clockwise ones looking up.
 
-    Raises `SpecError` unless it is a mesh of a scale other than 0.
+    Raises `SpecError` unless it is a mesh that Blender evaluates, of a scale other than 0.
     """
     if obj.type != "MESH":
         hint = "choose a mesh, or convert it to one"
         raise SpecError(f"{shown_name(obj)} type", obj.type, "MESH", hint, problem="is not")
     evaluated = obj.evaluated_get(depsgraph)
+    _check_state(obj, evaluated)
     matrix = np.array(evaluated.matrix_world, dtype=float)
     scale = np.linalg.norm(matrix[:3, :3], axis=0)
     size = float(np.linalg.det(matrix[:3, :3]))
@@ -61,6 +62,15 @@ def world_triangles(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Ar
         evaluated.to_mesh_clear()
     out = triangles @ matrix[:3, :3].T + matrix[:3, 3]
     return out if size > 0.0 else out[:, ::-1]  # a mirrored mesh keeps what it looks at, its corners run the other way
+
+
+def _check_state(obj: bpy.types.Object, evaluated: bpy.types.Object) -> None:
+    """Raise `SpecError` if `obj` would be sampled without its modifiers and its place, or not as it is edited."""
+    if not evaluated.is_evaluated:
+        hint = "turn on its monitor symbol in the Outliner and its collection, so that its modifiers count"
+        raise SpecError(shown_name(obj), None, "", hint, problem="is disabled, or not in this scene")
+    if obj.mode == "EDIT":
+        raise SpecError(shown_name(obj), None, "", "leave it first (Tab)", problem="is in Edit Mode")
 
 
 def _local_triangles(mesh: bpy.types.Mesh) -> Array:

@@ -156,6 +156,29 @@ def test_what_is_no_mesh_is_refused(core, scene, tools) -> None:
     assert 'type = "LIGHT"' in refused(tools, core, light)
 
 
+def test_a_mesh_that_blender_does_not_evaluate_is_refused(core, tools, add) -> None:
+    line = "is disabled, or not in this scene: turn on its monitor symbol in the Outliner"
+    assert refused(tools, core, add(hide_viewport=True)).startswith(line)
+
+
+def test_a_hidden_mesh_has_its_modifiers(tools, add) -> None:
+    obj = add(sheet(lambda x, y: -0.2 * x))
+    lift = obj.modifiers.new("Lift", "DISPLACE")
+    lift.strength, lift.mid_level, lift.direction = 3.0, 0.0, "Z"
+    obj.hide_set(True)
+    assert sampled(tools, obj).start[2] == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_mesh_in_edit_mode_is_refused(core, tools, add) -> None:
+    import bpy
+
+    obj = add()
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert refused(tools, core, obj) == "is in Edit Mode: leave it first (Tab)"
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def test_a_mesh_without_faces_is_refused(core, tools, add) -> None:
     assert refused(tools, core, add(np.empty((0, 3, 3)))).startswith(
         "faces = 0 is outside at least 1: choose a mesh with"
