@@ -13,9 +13,8 @@ from matplotlib.figure import Figure
 from .. import atomic
 from ..errors import RecordingError
 from ..simulation import recorded_gates
-from ..spec import RunSpec
-from ..spec.rhythm_defaults import rhythm_duration
 from . import gate_panels, panels
+from .headline import headline
 from .style import INK, QUIET, RC
 
 if TYPE_CHECKING:
@@ -84,41 +83,7 @@ def save_figure(figure: Figure, target: Path) -> None:
 
 
 def _write_title(figure: Figure, recording: Recording) -> None:
-    spec = RunSpec.from_text(recording.header["spec"], "the run document in the recording")
-    status = recording.header["status"]
-    facts = (
-        f"{spec.skier.mass:g} kg, {spec.skier.height:g} m on {spec.slope.angle_deg:g} degrees: {_course_words(spec)}"
-    ) + _comparison_words(spec)
-    ended = "" if status == "finished" else f" ({status} at {float(recording.time[-1]):.2f} s)"
-    name = " ".join(spec.name.split()) + ended
+    name, facts = headline(recording)
     figure.text(0.055, 0.98, name, fontsize=17, fontweight="bold", color=INK, va="center", parse_math=False)
     figure.text(0.055, 0.9635, facts, fontsize=10.5, color=INK, va="center")
     figure.text(0.975, 0.9635, "grey: transition between turns", fontsize=9, color=QUIET, va="center", ha="right")
-
-
-def _comparison_words(spec: RunSpec) -> str:
-    """Return what is run to compare with, or nothing for a skier who uses all he can."""
-    technique = spec.technique
-    chosen = (technique.controller, "whole_body"), (technique.equations, "mended")
-    return "".join(f", {word.replace('_', ' ')}" for word, usual in chosen if word != usual)
-
-
-def _course_words(spec: RunSpec) -> str:
-    """Return what the course is, in a few words."""
-    course = spec.course
-    if course.kind == "gates":
-        setting = {"list": "gates", "slalom": "slalom gates", "giant_slalom": "giant slalom gates"}[course.gate_setting]
-        return f"{len(spec.gate) if course.gate_setting == 'list' else course.gate_count} {setting}"
-    if course.kind == "path":
-        return f"a drawn path of {len(spec.point)} points"
-    if course.kind == "follow":
-        return f"a path of {len(spec.point)} points past {len(spec.obstacle)} obstacles"
-    if course.kind == "rhythm":
-        return f"a rhythm of {len(spec.rhythm)} rows, {rhythm_duration(course, spec.rhythm):g} s"
-    if course.kind == "bumps":
-        way = f"turning {course.turn_amplitude:g} m beside the crests" if course.turn_amplitude else "straight"
-        return f"over {spec.slope.kind}, {way}"
-    return (
-        f"{course.turn_count} turns of {course.turn_radius:g} m, {course.turn_duration:g} s each, "
-        f"{course.transition_duration:g} s between them"
-    )
