@@ -37,6 +37,7 @@ class SyntheticRecording:
     phase: np.ndarray
     inclination: np.ndarray
     edge_angle: np.ndarray
+    edge_angle_reference: np.ndarray
     snow_force: np.ndarray
     torque_ratio: np.ndarray
     ski_error: np.ndarray
@@ -47,6 +48,7 @@ class SyntheticRecording:
     capture_margin: np.ndarray
     zmp_margin: np.ndarray
     com: np.ndarray
+    com_reference: np.ndarray
     steering: np.ndarray
     qpos: np.ndarray
 
@@ -108,6 +110,7 @@ def synthetic_recording(
         phase=np.where(np.abs(swing) > 0.5, np.sign(swing), 0).astype(np.int8),
         inclination=inclination,
         edge_angle=np.stack((inclination * 1.1, inclination * 1.2), axis=1),
+        edge_angle_reference=np.stack((inclination * 1.15, inclination * 1.15), axis=1),
         snow_force=share[:, :, None] * total[:, None, :],
         torque_ratio=np.abs(swing)[:, None] * np.linspace(0.1, 0.8, len(HINGES)),
         ski_error=0.002 * np.abs(swing),
@@ -118,6 +121,7 @@ def synthetic_recording(
         capture_margin=0.4 - 0.3 * np.abs(swing),
         zmp_margin=0.05 + 0.04 * swing,
         com=ground + (0.7 + 0.1 * swing)[:, None] * normal,
+        com_reference=ground + 0.8 * normal,
         steering=np.radians(12.0) * swing,
         qpos=qpos,
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 CORE = ROOT / "ski_addon"
-BLENDER = {"bpy", "bmesh", "gpu", "mathutils", "bpy_extras", "addon_utils", "bl_ui"}
+BLENDER = {"bpy", "bmesh", "blf", "gpu", "mathutils", "bpy_extras", "addon_utils", "bl_ui"}
 COMMAND_LINE = {"ski_addon/cli.py", "ski_addon/results.py"}
 BLENDER_ROOMS = ("operators", "ski_addon/blender", "tests/blender", "tests/gui")
 

@@ -16,9 +16,7 @@ REPORT_PROPERTY = "ski_report"
 """Custom property of an image: the scene or run whose report it is."""
 
 
-def show_report(
-    recording: Recording, scene: bpy.types.Scene | str, *, size: tuple[int, int] = SIZE
-) -> bpy.types.Image:
+def show_report(recording: Recording, scene: bpy.types.Scene | str, *, size: tuple[int, int] = SIZE) -> bpy.types.Image:
     """Draw the report of `recording` into the image "Ski report NAME" and return it; nothing is opened.
 
     NAME is that of `scene`, or the text itself. The image is made at the first call and drawn anew later; it is packed

@@ -199,9 +199,7 @@ def _gates(canvas: Canvas, box: Box, passing: GatePassing, scale: float) -> None
     top = value_range(free, passing.distance, passing.gates.distance, np.zeros(1), margin=0.15)[1]
     chart = Chart(canvas, box, (0.4, count + 0.6), (0.0, top), scale)
     numbers = np.arange(1, count + 1)
-    chart.axes(
-        "Gates: distance of the pole", "m; bars: free beside the nearer ski", x_ticks=numbers[:: -(-count // 26)]
-    )
+    chart.axes("Gates: distance of the pole", "m (bars: free space)", x_ticks=numbers[:: -(-count // 26)])
     for gate, passed in enumerate(passing.passed.tolist()):
         color = LEFT if passing.gates.side[gate] > 0 else RIGHT
         asked = float(passing.gates.distance[gate])

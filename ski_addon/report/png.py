@@ -12,17 +12,20 @@ from ..atomic import atomic_path
 from ..frames import Array
 
 _COLOURS = 256
+_COARSE = 4
+"""Bits by which colours may differ and still be put into one."""
 
 
 def save_png(pixels: Array, target: str | Path) -> None:
     """Write `pixels` (h, w, 3 or 4), sRGB from 0 to 1, as an opaque picture, in one step.
 
-    The file holds the 256 most frequent colours; others become the nearest of them, which makes plots small. Raises
+    The file holds at most 256 colours: those that nearly agree become the most frequent of them, which
+    keeps plots small. Raises
     `OutputError` if it cannot be written.
     """
     height, width = pixels.shape[:2]
     levels = np.round(255.0 * np.clip(pixels[..., :3], 0.0, 1.0)).astype(np.int64)
-    palette, index = _palette(levels @ (1 << 16, 1 << 8, 1))
+    palette, index = _palette(levels.reshape(-1, 3))
     rows = np.zeros((height, 1 + width), dtype=np.uint8)  # a zero before each row: its bytes are given as they are
     rows[:, 1:] = index.reshape(height, width)
     head = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
@@ -32,14 +35,16 @@ def save_png(pixels: Array, target: str | Path) -> None:
         temporary.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*chunk) for chunk in chunks))
 
 
-def _palette(colours: Array) -> tuple[Array, Array]:
-    """Return up to 256 colours (k, 3) uint8, and for each of `colours` (n numbers 0xRRGGBB) which of them it is."""
-    found, which, count = np.unique(colours, return_inverse=True, return_counts=True)
-    chosen = np.sort(np.argsort(-count, kind="stable")[:_COLOURS])
-    parts = np.stack((found >> 16, (found >> 8) & 255, found & 255), axis=1).astype(np.float32)
-    palette = parts[chosen]
+def _palette(levels: Array) -> tuple[Array, Array]:
+    """Return up to 256 colours (k, 3) uint8, and for each of `levels` (n, 3), 0 to 255, which is nearest to it."""
+    found, which, count = np.unique(levels @ (1 << 16, 1 << 8, 1), return_inverse=True, return_counts=True)
+    parts = np.stack((found >> 16, (found >> 8) & 255, found & 255), axis=1)
+    order = np.argsort(-count, kind="stable")
+    _, first, bins = np.unique((parts[order] >> _COARSE) @ (1 << 16, 1 << 8, 1), return_index=True, return_inverse=True)
+    total = np.bincount(bins.ravel(), count[order])
+    palette = parts[order[first[np.argsort(-total, kind="stable")[:_COLOURS]]]]
     # |a - b|^2 without |a|^2, which is the same for all b
-    nearest = np.argmin(np.sum(palette**2, axis=1) - 2.0 * parts @ palette.T, axis=1)
+    nearest = np.argmin(np.sum(palette**2, axis=1) - 2 * parts @ palette.T, axis=1)
     return palette.astype(np.uint8), nearest[which.ravel()].astype(np.uint8)
 
 

@@ -1,0 +1,169 @@
+"""The overlay of the 3D view: forces, centre of mass, plan and edge angles over the scene, kept in no file."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+
+from ..frames import Array
+from .overlay_data import OverlayData, OverlayMoment, build_overlay
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
+    from ..spec import RunSpec
+
+LINE_WIDTH = 2.5
+TEXT_SIZE = 13.0
+"""Size of lines and words [pixels at a scale of 1 of the interface]."""
+_log = logging.getLogger(__name__)
+
+
+class _Overlay:
+    """What is shown, and the handlers that draw it."""
+
+    def __init__(self, data: OverlayData, world_from_run: Array, time_of_frame: Callable[[float], float]) -> None:
+        self._data = data
+        self._rotation, self._shift = world_from_run[:3, :3], world_from_run[:3, 3]
+        self._time_of_frame = time_of_frame
+        self._frame: float | None = None
+        self._moment: OverlayMoment | None = None
+        self._batch: Any = None
+        self._shader: Any = None
+        self._failed = False
+        self._handlers: list[Any] = []
+
+    def start(self) -> None:
+        """Begin to draw."""
+        for draw, kind in ((self.draw_lines, "POST_VIEW"), (self.draw_words, "POST_PIXEL")):
+            self._handlers.append(bpy.types.SpaceView3D.draw_handler_add(self._guarded, (draw,), "WINDOW", kind))
+
+    def stop(self) -> None:
+        """End drawing."""
+        while self._handlers:
+            bpy.types.SpaceView3D.draw_handler_remove(self._handlers.pop(), "WINDOW")
+
+    def _guarded(self, draw: Callable[[], None]) -> None:
+        """Draw, and after the first failure never again: a handler that fails would fail at every redraw."""
+        if self._failed:
+            return
+        try:
+            draw()
+        except Exception as error:
+            self._failed = True
+            _log.warning("the ski overlay was switched off: %s: %s", type(error).__name__, error)
+            # Not here: Blender is going through its list of handlers.
+            bpy.app.timers.register(self._retire, first_interval=0.0)
+
+    def _retire(self) -> None:
+        """Take the handlers away, unless that is done already."""
+        if self in _shown:
+            hide()
+
+    def moment(self, frame: float) -> OverlayMoment:
+        """Return what is shown at a frame of the scene; kept until the frame changes."""
+        if self._moment is None or frame != self._frame:
+            self._moment, self._batch = self._data.at(self._time_of_frame(frame)), None
+            self._frame = frame
+        return self._moment
+
+    def to_world(self, place: Array) -> Array:
+        """Return points (..., 3) of the run frame in the world."""
+        return place @ self._rotation.T + self._shift
+
+    def draw_lines(self) -> None:
+        """Draw the lines into the 3D view that is being drawn."""
+        import gpu
+        from gpu_extras.batch import batch_for_shader
+
+        context = bpy.context
+        moment = self.moment(context.scene.frame_current_final)
+        if self._shader is None:
+            self._shader = gpu.shader.from_builtin("POLYLINE_FLAT_COLOR")
+        if self._batch is None:
+            points = self.to_world(moment.segments).reshape(-1, 3).astype(np.float32)
+            colors = np.repeat(moment.colors, 2, axis=0).astype(np.float32)
+            self._batch = batch_for_shader(self._shader, "LINES", {"pos": points, "color": colors})
+        blend, depth, mask = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
+        try:
+            gpu.state.blend_set("ALPHA")
+            gpu.state.depth_test_set("NONE")
+            gpu.state.depth_mask_set(False)
+            self._shader.bind()
+            self._shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+            self._shader.uniform_float("lineWidth", LINE_WIDTH * context.preferences.system.ui_scale)
+            self._batch.draw(self._shader)
+        finally:
+            gpu.state.blend_set(blend)
+            gpu.state.depth_test_set(depth)
+            gpu.state.depth_mask_set(mask)
+
+    def draw_words(self) -> None:
+        """Write the labels over the 3D view that is being drawn."""
+        import blf
+        from bpy_extras.view3d_utils import location_3d_to_region_2d
+        from mathutils import Vector
+
+        context = bpy.context
+        blf.size(0, TEXT_SIZE * context.preferences.system.ui_scale)
+        for label in self.moment(context.scene.frame_current_final).labels:
+            place = Vector(self.to_world(label.place).tolist())
+            spot = location_3d_to_region_2d(context.region, context.region_data, place)
+            if spot is not None:  # in front of the eye
+                wide, high = blf.dimensions(0, label.words)
+                blf.color(0, *label.color.tolist())
+                blf.position(0, spot.x - 0.5 * wide, spot.y - 0.5 * high, 0.0)
+                blf.draw(0, label.words)
+
+
+_shown: list[_Overlay] = []
+
+
+def show(recording: Recording, spec: RunSpec, world_from_run: Any, time_of_frame: Callable[[float], float]) -> bool:
+    """Draw `recording`, a run of `spec`, over every 3D view, in place of what was shown; returns whether it is.
+
+    `world_from_run` (4, 4) is where the run stands in the world, a matrix or rows of numbers; `time_of_frame` gives the
+    time [s] since the start of the recording of a scene's frame, which may be a part of one. Without a window nothing
+    happens. Raises `EmptyRecordingError` if nothing was recorded.
+    """
+    hide()
+    if bpy.app.background:
+        return False
+    overlay = _Overlay(build_overlay(recording, spec), np.array(world_from_run, dtype=float), time_of_frame)
+    overlay.start()
+    _shown.append(overlay)
+    bpy.app.handlers.load_pre.append(_hide_before_load)
+    _redraw()
+    return True
+
+
+def hide() -> None:
+    """Draw the overlay no more; nothing happens if there is none."""
+    if not _shown:
+        return
+    while _shown:
+        _shown.pop().stop()
+    if _hide_before_load in bpy.app.handlers.load_pre:
+        bpy.app.handlers.load_pre.remove(_hide_before_load)
+    _redraw()
+
+
+def is_shown() -> bool:
+    """Return whether an overlay is drawn."""
+    return bool(_shown)
+
+
+@bpy.app.handlers.persistent
+def _hide_before_load(*_: Any) -> None:
+    """Another file is opened: its frames are not those of the run."""
+    hide()
+
+
+def _redraw() -> None:
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
