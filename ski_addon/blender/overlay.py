@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..spec import RunSpec
 
 LINE_WIDTH = 2.5
-TEXT_SIZE = 13.0
+TEXT_SIZE = 15.0
 """Size of lines and words [pixels at a scale of 1 of the interface]."""
 _log = logging.getLogger(__name__)
 
@@ -109,14 +109,19 @@ class _Overlay:
 
         context = bpy.context
         blf.size(0, TEXT_SIZE * context.preferences.system.ui_scale)
-        for label in self.moment(context.scene.frame_current_final).labels:
-            place = Vector(self.to_world(label.place).tolist())
-            spot = location_3d_to_region_2d(context.region, context.region_data, place)
-            if spot is not None:  # in front of the eye
-                wide, high = blf.dimensions(0, label.words)
-                blf.color(0, *label.color.tolist())
-                blf.position(0, spot.x - 0.5 * wide, spot.y - 0.5 * high, 0.0)
-                blf.draw(0, label.words)
+        blf.enable(0, blf.SHADOW)  # letters are read over snow and over the dark background
+        try:
+            blf.shadow(0, 5, 0.0, 0.0, 0.0, 0.8)
+            for label in self.moment(context.scene.frame_current_final).labels:
+                place = Vector(self.to_world(label.place).tolist())
+                spot = location_3d_to_region_2d(context.region, context.region_data, place)
+                if spot is not None:  # in front of the eye
+                    wide, high = blf.dimensions(0, label.words)
+                    blf.color(0, *label.color.tolist())
+                    blf.position(0, spot.x - 0.5 * wide, spot.y - 0.5 * high, 0.0)
+                    blf.draw(0, label.words)
+        finally:
+            blf.disable(0, blf.SHADOW)
 
 
 _shown: list[_Overlay] = []

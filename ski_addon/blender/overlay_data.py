@@ -24,9 +24,10 @@ RATE = 120.0
 """Moments in a second that the tables hold, at least."""
 ARROW_METRES = 1.0
 """Length of a force of one body weight [m]."""
-_HEAD, _HEAD_LARGEST = 0.25, 0.15
+_HEAD, _HEAD_LARGEST = 0.25, 0.18
 _CROSS = 0.12
-_LIFT = 0.35
+_AHEAD, _OUTWARD, _LIFT = 0.95, 0.1, 0.1
+"""Where words stand, from the middle of a ski [m]: before its tip, clear of the body."""
 LINES = (
     ("body", THIRD, 1),
     ("body on the snow", THIRD, 2),
@@ -127,8 +128,8 @@ def build_overlay(recording: Recording, spec: RunSpec) -> OverlayData:
         (
             np.stack((com, ground), axis=1)[:, None],
             _crosses(ground, (ahead, left)),
-            _arrows(skis[:, 0], ARROW_METRES * force[:, 0], ahead),
-            _arrows(skis[:, 1], ARROW_METRES * force[:, 1], ahead),
+            _arrows(skis[:, 0], ARROW_METRES * force[:, 0], left),
+            _arrows(skis[:, 1], ARROW_METRES * force[:, 1], left),
             _crosses(reference, (ahead, left, normal)),
             np.stack((reference, track), axis=1)[:, None],
         ),
@@ -136,7 +137,8 @@ def build_overlay(recording: Recording, spec: RunSpec) -> OverlayData:
     )
     colors = np.concatenate([np.tile(_rgba(color), (count, 1)) for _, color, count in LINES])
     edge = np.degrees(linear(recording.edge_angle, where))
-    places = skis + _LIFT * (normal[:, None] + np.array([[1.0], [-1.0]]) * left[:, None])
+    outward = np.array([[1.0], [-1.0]]) * left[:, None]
+    places = skis + _AHEAD * ahead[:, None] + _OUTWARD * outward + _LIFT * normal[:, None]
     return OverlayData(time, segments, colors, edge, places)
 
 
@@ -154,7 +156,7 @@ def _crosses(place: Array, axes: tuple[Array, ...]) -> Array:
 def _arrows(place: Array, way: Array, beside: Array) -> Array:
     """Return arrows (m, 3, 2, 3) from `place` (m, 3) along `way` (m, 3): a shaft and the two sides of the head.
 
-    The head spreads towards `beside` (m, 3), which `way` never follows; it shrinks with a short arrow.
+    The head spreads in the plane of `way` and `beside` (m, 3); it shrinks with a short arrow.
     """
     tip = place + way
     length = np.linalg.norm(way, axis=1, keepdims=True)

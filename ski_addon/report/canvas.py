@@ -15,7 +15,7 @@ from .lettering import CAPITAL, text_strokes, text_width
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom of a part of the canvas [pixels]."""
 
-THIN, BOLD = 0.125, 0.2
+THIN, BOLD = 0.14, 0.2
 """Width of a letter's strokes over the height of its capitals."""
 _PIECE = 4.0
 """Longest piece of a line that is drawn at a time [pixels]."""

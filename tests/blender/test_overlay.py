@@ -82,7 +82,8 @@ def test_words_give_the_edge_angle_of_each_ski_beside_it(data, recording) -> Non
     assert [label.words for label in moment.labels] == ["+33\N{DEGREE SIGN}", "+36\N{DEGREE SIGN}"]
     left, right = (label.place for label in moment.labels)
     for place, name in ((left, "force left"), (right, "force right")):
-        assert 0.2 < np.linalg.norm(place - moment.segments[data.named(name)][0, 0]) < 0.8
+        ahead = (place - moment.segments[data.named(name)][0, 0]) @ sample(recording, "track_tangent", 1.25)
+        assert 0.9 < ahead < 1.0  # before its tip
     assert left[1] > right[1]
 
 
