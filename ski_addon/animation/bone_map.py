@@ -4,27 +4,52 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..errors import MissingInputError, SpecError
 
+_ENTRY_KEYS = {"body": str, "location": bool, "share": float, "parent": str, "optional": bool}
+_DOCUMENT_KEYS = ("name", "root", "bones", "settings")
+
 
 @dataclass(frozen=True)
 class BoneEntry:
-    """`bone` turns with `body`; `location` says that it also moves freely (it must then not be a connected bone)."""
+    """`bone` turns with `body`; `location` says that it also moves freely (it must then not be a connected bone).
+
+    Only an armature that was not made here uses the rest: `share` (0..1) turns the bone only that part of the way from
+    the body's parent to the body, for a spine of many bones; `parent` is the bone that carries it where the armature's
+    own parent follows by constraints; an `optional` bone may be missing.
+    """
 
     bone: str
     body: str
     location: bool = False
+    share: float = 1.0
+    parent: str = ""
+    optional: bool = False
+
+
+@dataclass(frozen=True)
+class BoneSetting:
+    """A number to key once: the custom property `name` of `bone` gets `value`, as for a switch from IK to FK."""
+
+    bone: str
+    name: str
+    value: float
 
 
 @dataclass(frozen=True)
 class BoneMap:
-    """Table of bones that follow bodies, in order; bones that are not in it are never touched."""
+    """Table of bones that follow bodies, in order; bones that are not in it are never touched.
+
+    `root` is the bone that may carry the whole figure along ("" for none); `settings` are keyed beside the bones.
+    """
 
     name: str
     entries: tuple[BoneEntry, ...]
+    root: str = ""
+    settings: tuple[BoneSetting, ...] = field(default=())
 
     @property
     def bones(self) -> tuple[str, ...]:
@@ -33,14 +58,26 @@ class BoneMap:
 
     @classmethod
     def from_document(cls, document: dict[str, object], source: str = "bone map") -> BoneMap:
-        """Read a parsed TOML document: `name`, and one `[bones]` key a bone, a body's name or {body, location}."""
+        """Read a parsed TOML document.
+
+        It has a `name`, one `[bones]` key a bone with a body's name or a table (see `BoneEntry`), and may have `root`
+        and a table `[settings."bone"]` of numbers for each bone with switches. Raises `SpecError` for anything else.
+        """
+        for key in document:
+            if key not in _DOCUMENT_KEYS:
+                raise SpecError(key, None, ", ".join(_DOCUMENT_KEYS), source, problem="is not one of")
+        for key in ("name", "root"):
+            if not isinstance(document.get(key, ""), str):
+                raise SpecError(key, document[key], "a name", source, problem="is not")
         bones = document.get("bones")
         if not isinstance(bones, dict) or not bones:
             raise SpecError(
                 "bones", None, "", f'write one line a bone, as in pelvis = "pelvis" ({source})', problem="is missing"
             )
         entries = tuple(_entry(bone, value) for bone, value in bones.items())
-        return cls(str(document.get("name", source)), entries)
+        return cls(
+            str(document.get("name", source)), entries, str(document.get("root", "")), _settings(document, source)
+        )
 
     @classmethod
     def load(cls, path: str | Path) -> BoneMap:
@@ -70,10 +107,62 @@ class BoneMap:
                     f"bones.{entry.bone}", entry.body, ", ".join(sorted(known_bodies)), problem="is not one of"
                 )
 
+    def resolved(self, bones: Iterable[str]) -> tuple[BoneMap, tuple[str, ...]]:
+        """Return this map with the names that `bones` really have, and the names of bones that are missing.
+
+        A bone may have a prefix that ends with a colon ("mixamorig:Hips"). Missing bones are left out of the map.
+        """
+        known = list(bones)
+        short = {name.rpartition(":")[2]: name for name in reversed(known)}
+        actual = {name: name if name in known else short.get(name, "") for name in self._all_names()}
+        entries = tuple(
+            replace(entry, bone=actual[entry.bone], parent=actual[entry.parent] if entry.parent else "")
+            for entry in self.entries
+            if actual[entry.bone]
+        )
+        settings = tuple(replace(item, bone=actual[item.bone]) for item in self.settings if actual[item.bone])
+        wanted = [entry.bone for entry in self.entries if not entry.optional]
+        wanted += [name for entry in self.entries if entry.parent for name in [entry.parent]]
+        wanted += [item.bone for item in self.settings]
+        missing = tuple(dict.fromkeys(name for name in wanted if not actual[name]))
+        return BoneMap(self.name, entries, actual.get(self.root, ""), settings), missing
+
+    def _all_names(self) -> set[str]:
+        names = {*self.bones, *(entry.parent for entry in self.entries), *(item.bone for item in self.settings)}
+        return (names | {self.root}) - {""}
+
 
 def _entry(bone: str, value: object) -> BoneEntry:
     if isinstance(value, str):
         return BoneEntry(bone, value)
-    if isinstance(value, dict) and isinstance(value.get("body"), str) and set(value) <= {"body", "location"}:
-        return BoneEntry(bone, value["body"], bool(value.get("location", False)))
-    raise SpecError(f"bones.{bone}", value, "a body's name or {body, location}", problem="is not")
+    if not isinstance(value, dict) or "body" not in value or not set(value) <= set(_ENTRY_KEYS):
+        raise SpecError(f"bones.{bone}", value, f"a body's name or {{{', '.join(_ENTRY_KEYS)}}}", problem="is not")
+    for key, item in value.items():
+        kind = _ENTRY_KEYS[key]
+        if not (_is_number(item) if kind is float else isinstance(item, kind)):
+            words = {str: "a name", bool: "true or false", float: "a number"}[kind]
+            raise SpecError(f"bones.{bone}.{key}", item, words, problem="is not")
+    if not 0.0 <= value.get("share", 1.0) <= 1.0:
+        raise SpecError(f"bones.{bone}.share", value["share"], "0..1", "1 turns the bone as far as its body")
+    return BoneEntry(bone, **value)
+
+
+def _settings(document: dict[str, object], source: str) -> tuple[BoneSetting, ...]:
+    tables = document.get("settings", {})
+    if not isinstance(tables, dict):
+        raise SpecError(
+            "settings", tables, 'tables, as in [settings."thigh_parent.L"]', source, problem="is not made of"
+        )
+    found = []
+    for bone, table in tables.items():
+        if not isinstance(table, dict):
+            raise SpecError(f"settings.{bone}", table, "a table of numbers", source, problem="is not")
+        for name, value in table.items():
+            if not (_is_number(value) or isinstance(value, bool)):
+                raise SpecError(f"settings.{bone}.{name}", value, "a number", source, problem="is not")
+            found.append(BoneSetting(bone, name, float(value)))
+    return tuple(found)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
