@@ -97,9 +97,9 @@ def bake_poses(
     action, slot, channelbag = bake_action(armature, name)
     writer = KeyWriter(channelbag, poses.frame)
     _write_bones(armature, keyframes, writer)
-    _write_channels(armature, channels, writer)
+    write_channels(armature, channels, writer)
     assign_action(armature, action, slot)
-    _set_range(scene, action, poses.frame)
+    set_range(scene, action, poses.frame)
     return BakeResult(armature, action, float(poses.frame[0]), float(poses.frame[-1]))
 
 
@@ -145,7 +145,8 @@ def _write_bones(armature: bpy.types.Object, keyframes: BoneKeyframes, writer: K
         writer.write(f"{path}.rotation_quaternion", channels.rotation, channels.bone)
 
 
-def _write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], writer: KeyWriter) -> None:
+def write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], writer: KeyWriter) -> None:
+    """Write numbers to drive with as animated custom properties of `armature`."""
     for channel in channels:
         armature[channel.name] = float(channel.values[0])
         unit = f" [{channel.unit}]" if channel.unit else ""
@@ -153,7 +154,8 @@ def _write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], w
         writer.write(f'["{channel.name}"]', channel.values, CHANNEL_GROUP)
 
 
-def _set_range(scene: bpy.types.Scene, action: bpy.types.Action, frame: np.ndarray) -> None:
+def set_range(scene: bpy.types.Scene, action: bpy.types.Action, frame: np.ndarray) -> None:
+    """Let `scene` and `action` run over the keys at `frame` (m,)."""
     action.use_frame_range = True
     action.frame_start, action.frame_end = float(frame[0]), float(frame[-1])
     scene.frame_start, scene.frame_end = int(np.ceil(frame[0])), int(np.floor(frame[-1]))

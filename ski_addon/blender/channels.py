@@ -48,25 +48,29 @@ class KeyWriter:
         return self._channelbag.groups.get(name) or self._channelbag.groups.new(name)
 
 
-def bake_action(obj: bpy.types.Object, name: str) -> tuple[bpy.types.Action, Any, Any]:
+def bake_action(
+    obj: bpy.types.Object, name: str, again: bpy.types.Action | None = None
+) -> tuple[bpy.types.Action, Any, Any]:
     """Return (action, slot, channelbag), empty, to write the motion of `obj` into; it is not yet assigned.
 
-    The action that `obj` has is taken again if an earlier bake made it for this object alone. Otherwise there is a
-    new one, so that nobody's own keys are lost.
+    The action that `obj` has is taken again if an earlier bake made it for this object alone (`again` is one that is
+    known to be so). Otherwise there is a new one, so that nobody's own keys are lost.
     """
     data = obj.animation_data
-    action = data.action if data else None
-    if action is not None and _is_ours_alone(action):
-        channelbag = ensure_channelbag(action, data.action_slot)
+    action = again or (data.action if data else None)
+    if action is not None and (again or is_ours_alone(action)):
+        slot = action.slots[0]
+        channelbag = ensure_channelbag(action, slot)
         channelbag.fcurves.clear()
-        return action, data.action_slot, channelbag
+        return action, slot, channelbag
     action = bpy.data.actions.new(name)
     action[MARK] = True
     slot = action.slots.new(id_type="OBJECT", name=obj.name)
     return action, slot, ensure_channelbag(action, slot)
 
 
-def _is_ours_alone(action: bpy.types.Action) -> bool:
+def is_ours_alone(action: bpy.types.Action) -> bool:
+    """Return whether a bake made `action` and it is used in one place only, so that it may be written again."""
     users = action.users - int(action.use_fake_user)
     return bool(action.get(MARK)) and action.is_editable and users == 1 and len(action.slots) == 1
 
