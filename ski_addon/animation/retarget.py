@@ -145,7 +145,7 @@ def _place_body(
 
 
 def _ground_motion(poses: BodyPoses, recorded: dict[str, Array], target: TargetBody, scale: float) -> Array:
-    """Return the world matrix (m, 4, 4) of an armature that slides along between the skis, turned as the pelvis faces."""
+    """Return the world matrix (m, 4, 4) of an armature that slides along between the skis, facing as the pelvis."""
     skis = [poses.body_names.index(f"ski.{side}") for side in SIDES]
     fore = recorded["pelvis"][..., 0]
     heading = np.arctan2(np.ascontiguousarray(fore[:, 1]), np.ascontiguousarray(fore[:, 0]))

@@ -12,10 +12,10 @@ from mathutils import Matrix
 from ..animation.bone_map import BoneMap
 from ..animation.poses import BodyPoses, sample_body_poses, sample_channels
 from ..animation.retarget import Retargeted, RetargetOptions, retarget, ski_in_foot
-from ..animation.target import TargetBody, TargetRest, measure_target
-from ..body import Skeleton, build_skeleton
+from ..animation.target import measure_target
+from ..body import build_skeleton
 from ..errors import SpecError
-from ..frames import Array, matrix_from_quaternion
+from ..frames import Array
 from ..spec import BakeSpec
 from .armature_checks import check_free, check_object, check_scale, check_size, check_upright, target_rest
 from .armature_keys import ArmatureKeys
@@ -64,9 +64,12 @@ class ArmatureOptions:
                 raise SpecError(f"retarget.{name}", getattr(self, name), f"0..{most:g} {unit}", "0 keeps every key")
         self.retargeting()
 
-    def retargeting(self) -> RetargetOptions:
-        """Return the part of the options that the library without Blender needs."""
-        usual = SOLE_ABOVE_SKI_BASE if self.equipment == "objects" else 0.0
+    def retargeting(self, on_own_skis: bool = False) -> RetargetOptions:
+        """Return the part of the options that the library without Blender needs.
+
+        `on_own_skis`: the armature has skis of its own, on which it stands at rest.
+        """
+        usual = SOLE_ABOVE_SKI_BASE if self.equipment == "objects" and not on_own_skis else 0.0
         return RetargetOptions(self.root, self.legs, usual if self.sole_height is None else self.sole_height)
 
 
@@ -113,10 +116,15 @@ def bake_on_armature(
     check_size(armature.name, scale, target)
     if options.root != "object":
         check_upright(armature.name, place, target)
-    made = retarget(poses, skeleton, bone_map, rest, place, options.retargeting(), armature.name)
+    retargeting = options.retargeting(on_own_skis="ski.L" in target.main)
+    made = retarget(poses, skeleton, bone_map, rest, place, retargeting, armature.name)
     check_free(armature, bone_map, options.root)
     action, notes = _write(armature, made, poses, bone_map, recording, scene, scale, options, bake.action)
-    gear = _gear(armature, made, poses, skeleton, target, rest, scale, scene, options, bake.action)
+    places = {}
+    if options.equipment == "objects":
+        on_ski = ski_in_foot(skeleton, target, scale, made.size, retargeting.sole_height)
+        places = gear_places(made, poses, skeleton, target, rest, scale, on_ski)
+    gear = put_gear(armature, places, skeleton, poses.frame, scale, scene, bake.action)
     notes = (*_notes(armature, bone_map, missing, made), *notes)
     first, last = float(poses.frame[0]), float(poses.frame[-1])
     return ArmatureBake(armature, action, first, last, gear, notes, float(made.foot_error.max()))
@@ -170,26 +178,6 @@ def _write(
     else:
         assign_action(armature, action, slot)
     return action, tuple(notes)
-
-
-def _gear(
-    armature: bpy.types.Object,
-    made: Retargeted,
-    poses: BodyPoses,
-    skeleton: Skeleton,
-    target: TargetBody,
-    rest: TargetRest,
-    scale: float,
-    scene: bpy.types.Scene,
-    options: ArmatureOptions,
-    name: str,
-) -> tuple[bpy.types.Object, ...]:
-    if options.equipment == "none":
-        return put_gear(armature, {}, skeleton, poses.frame, scale, scene, name)
-    recorded = {body: matrix_from_quaternion(poses.quaternion[:, i]) for i, body in enumerate(poses.body_names)}
-    on_ski = ski_in_foot(skeleton, target, scale, made.size, options.retargeting().sole_height)
-    places = gear_places(made, recorded, skeleton, target, rest, scale, on_ski)
-    return put_gear(armature, places, skeleton, poses.frame, scale, scene, name)
 
 
 def _notes(

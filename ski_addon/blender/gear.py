@@ -9,9 +9,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ..animation.poses import BodyPoses
 from ..animation.retarget import Retargeted
 from ..animation.target import TargetBody, TargetRest
-from ..frames import Array, continuous_quaternions, quaternion_from_matrix
+from ..frames import Array, continuous_quaternions, matrix_from_quaternion, quaternion_from_matrix
 from .channels import MARK, KeyWriter, assign_action, bake_action
 from .meshes import part_mesh
 from .skier.build import equipment_part
@@ -39,23 +40,23 @@ class GearPlace:
 
 def gear_places(
     made: Retargeted,
-    recorded: dict[str, Array],
+    poses: BodyPoses,
     skeleton: Skeleton,
     target: TargetBody,
     rest: TargetRest,
     scale: float,
     on_ski: Array,
 ) -> dict[str, GearPlace]:
-    """Return where each ski and pole lies, for those whose foot or hand has a bone.
+    """Return where each ski and pole lies, for those without a bone whose foot or hand has one.
 
-    `recorded` {body: (m, 3, 3)} are the poles' world axes,
-    `on_ski` (3,) [m] is where a ski is from the ankle, in the axes of the foot.
+    `poses` are those that `made` was made from, `scale` is the length in metres of the armature's unit, and `on_ski`
+    (3,) [m] is where a ski is from the ankle, in the axes of the foot.
     """
     places = {}
     for body in ALPINE_GEAR:
         part, _, side = body.partition(".")
         carrier = f"{CARRIED_BY[part]}.{side}"
-        if carrier not in target.main:
+        if carrier not in target.main or body in target.main:
             continue
         bone = target.main[carrier]
         axes = rest.matrix[rest.bones.index(bone), :3, :3].T @ target.frame[carrier]  # bone from body
@@ -63,7 +64,8 @@ def gear_places(
             offset, turn = on_ski, axes[None]
         else:
             offset = made.size * np.asarray(skeleton.offset[skeleton.body(body)])
-            turn = axes @ np.swapaxes(made.turn[carrier], -1, -2) @ recorded[body]
+            pole = matrix_from_quaternion(poses.quaternion[:, poses.body_names.index(body)])
+            turn = axes @ np.swapaxes(made.turn[carrier], -1, -2) @ pole
         rotation = continuous_quaternions(quaternion_from_matrix(turn))
         places[body] = GearPlace(bone, axes @ offset / scale, rotation)
     return places

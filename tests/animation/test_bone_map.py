@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import textwrap
+import tomllib
+
 import pytest
 
 from ski_addon.animation.bone_map import BoneEntry, BoneMap, BoneSetting
@@ -78,3 +81,12 @@ def test_a_bad_map_says_what_is_wrong(tmp_path, text: str, named: str) -> None:
     path.write_text(text)
     with pytest.raises(SpecError, match=named):
         BoneMap.load(path)
+
+
+def test_the_example_on_the_page_is_a_bone_map() -> None:
+    page = (MAPS.parents[1] / "docs" / "baking.md").read_text(encoding="utf-8")
+    block = page[page.index('    name = "My rig"') :].partition("\n\nPelvis, thighs")[0]
+    bone_map = BoneMap.from_document(tomllib.loads(textwrap.dedent(block)))
+    assert bone_map.root == "root"
+    assert {entry.bone: entry.share for entry in bone_map.entries}["spine1"] == 0.5
+    assert bone_map.settings == (BoneSetting("leg.L", "IK_FK", 1.0),)

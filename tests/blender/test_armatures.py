@@ -14,7 +14,7 @@ from tests.blender.armature_tools import (
     world_matrix,
     world_pose,
 )
-from tests.blender.blender_tools import body_matrices, curves, keys, make_recording
+from tests.blender.blender_tools import body_matrices, bone_matrices, curves, keys, make_recording
 
 FRAMES = (1, 9, 20)
 
@@ -123,6 +123,39 @@ def test_parts_point_as_recorded(core, scene, kind: str, legs: str) -> None:
             assert angle_between(moved @ [0.0, 0.0, 1.0], want[body][:3, 2]) < 0.5, (body, frame)
             assert angle_between(moved @ [0.0, -1.0, 0.0], want[body][:3, 0]) < 0.5, (body, frame)
     assert (result.foot_error < 1e-4) == (legs == "reach")
+
+
+@ALL
+def test_limbs_twist_as_recorded(core, scene, kind: str) -> None:
+    """The axes of every body at rest, carried along by its bone, lie on the recorded axes: twist included."""
+    armature = KINDS[kind][0](scene)
+    tools, checks = core("blender.armatures"), core("blender.armature_checks")
+    rest = checks.target_rest(armature)
+    target = core("animation.target").measure_target(tools.detect_bone_map(armature).bone_map, rest)
+    assert len(target.main) >= 15
+    recording = make_recording(core)
+    bake(core, scene, armature, recording, legs="angles")
+    for frame in FRAMES:
+        scene.frame_set(frame)
+        want = body_matrices(core, recording, (frame - 1) / 24)
+        for body, bone in target.main.items():
+            own = rest.matrix[rest.bones.index(bone), :3, :3]
+            shown = world_pose(armature, bone)[:3, :3] @ own.T @ target.frame[body]
+            for axis in range(3):
+                assert angle_between(shown[:, axis], want[body][:3, axis]) < 0.5, (body, frame)
+
+
+def test_a_skier_made_here_moves_as_its_own_bake_moves_it(core, scene) -> None:
+    recording = make_recording(core)
+    armature = core("blender.bake").bake_recording(recording, scene).armature
+    assert core("blender.armatures").detect_bone_map(armature).path.stem == "skier"
+    result = bake(core, scene, armature, recording)
+    assert result.gear == ()
+    for frame in FRAMES:
+        scene.frame_set(frame)
+        want, got = body_matrices(core, recording, (frame - 1) / 24), bone_matrices(core, armature, recording)
+        for body, matrix in want.items():
+            np.testing.assert_allclose(got[body], matrix, atol=2e-3, err_msg=f"{body} at frame {frame}")
 
 
 @ALL
@@ -449,6 +482,75 @@ def test_a_linked_armature_is_refused(core, scene, tmp_path) -> None:
     scene.collection.objects.link(armature)
     with pytest.raises(core("errors").SpecError, match=r'Hero = "library\.blend" is linked.*override'):
         bake(core, scene, armature)
+
+
+@pytest.mark.parametrize("as_strip", [False, True])
+def test_an_override_of_a_linked_armature_is_baked(core, scene, tmp_path, as_strip: bool) -> None:
+    import bpy
+
+    unreal(scene)
+    path = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(path, {scene.objects["Hero"]})
+    bpy.data.objects.remove(scene.objects["Hero"])
+    with bpy.data.libraries.load(path, link=True) as (there, here):
+        here.objects = there.objects
+    armature = here.objects[0].override_create()
+    scene.collection.objects.link(armature)
+    recording = make_recording(core)
+    for _ in range(2):
+        gear = bake(core, scene, armature, recording, as_strip=as_strip).gear
+    scene.frame_set(20)
+    want = body_matrices(core, recording, 19 / 24)
+    for obj in gear[:2]:
+        np.testing.assert_allclose(world_matrix(obj), want[obj["ski_addon_gear"]], atol=1e-4)
+
+
+def test_bones_may_carry_their_children_relatively(core, scene) -> None:
+    armature = unreal(scene)
+    for bone in armature.data.bones:
+        bone.use_relative_parent = True
+    recording = make_recording(core)
+    gear = bake(core, scene, armature, recording).gear
+    scene.frame_set(20)
+    want = body_matrices(core, recording, 19 / 24)
+    for obj in gear[:2]:
+        np.testing.assert_allclose(world_matrix(obj), want[obj["ski_addon_gear"]], atol=1e-4)
+
+
+def test_the_object_may_have_a_rotation_mode_and_an_action_of_its_own(core, scene) -> None:
+    import bpy
+
+    armature = unreal(scene)
+    armature.rotation_mode = "YZX"
+    mine = bpy.data.actions.new("Mine")
+    armature.animation_data_create().action = mine
+    armature.keyframe_insert("location", frame=1)
+    recording = make_recording(core)
+    result = bake(core, scene, armature, recording, root="object")
+    assert armature.rotation_mode == "YZX"
+    assert mine.use_fake_user
+    scene.frame_set(20)
+    want = body_matrices(core, recording, 19 / 24)
+    for obj in result.gear[:2]:
+        np.testing.assert_allclose(world_matrix(obj), want[obj["ski_addon_gear"]], atol=1e-4)
+
+
+def test_nothing_else_of_the_file_is_changed(core, scene) -> None:
+    import bpy
+
+    armature = unreal(scene)
+    cube = bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
+    scene.collection.objects.link(cube)
+    for obj in bpy.context.selected_objects:
+        obj.select_set(False)
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    scene.frame_set(5)
+    bake(core, scene, armature)
+    assert [obj.name for obj in bpy.context.selected_objects] == ["Cube"]
+    assert bpy.context.view_layer.objects.active == cube
+    assert scene.frame_current == 5
+    assert len(bpy.data.scenes) == 1
 
 
 def test_what_is_no_armature_is_refused(core, scene) -> None:
