@@ -46,21 +46,19 @@ def check_object(armature: bpy.types.Object) -> None:
         raise SpecError(name, None, "", "choose a character's armature", problem="has no bones")
 
 
-def check_scale(name: str, place: Array) -> float:
+def check_scale(armature: bpy.types.Object, place: Array) -> float:
     """Return the scale of an armature at `place` (4, 4); raise `SpecError` unless it is one positive number."""
     columns = place[:3, :3]
     size = np.linalg.norm(columns, axis=0)
-    shown = tuple(round(float(value), 4) for value in size)
-    apply_it = "apply its scale (Ctrl+A > Scale)"
+    field, own = f"scale of {armature.name}", tuple(round(value, 4) for value in armature.scale)
+    apply_it = "apply its scale (Ctrl+A > Scale), that of its parents too"
     if size.min() < 1e-9:
-        raise SpecError(f"scale of {name}", shown, "", "give it a size", problem="is nothing in a direction")
+        raise SpecError(field, own, "", "give it the same scale along all axes", problem="makes it flat")
     if np.linalg.det(columns) < 0.0:
-        raise SpecError(
-            f"scale of {name}", shown, "", apply_it, problem="is negative, which mirrors it, along an axis of"
-        )
+        raise SpecError(field, own, "", apply_it, problem="mirrors it (negative)")
     slanted = np.abs(columns.T @ columns / np.outer(size, size) - np.eye(3)).max() > 1e-3
     if size.max() / size.min() > 1.001 or slanted:
-        raise SpecError(f"scale of {name}", shown, "", f"{apply_it}, that of its parents too", problem="is not uniform")
+        raise SpecError(field, own, "", apply_it, problem="is not uniform")
     return float(size.mean())
 
 

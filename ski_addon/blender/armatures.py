@@ -112,7 +112,7 @@ def bake_on_armature(
     poses = sample_body_poses(recording, skeleton, scene_rate(scene), bake.subframes, bake.frame_start)
     rest, place = target_rest(armature), _place(armature)
     target = measure_target(bone_map, rest, armature.name)
-    scale = check_scale(armature.name, place)
+    scale = check_scale(armature, place)
     check_size(armature.name, scale, target)
     if options.root != "object":
         check_upright(armature.name, place, target)

@@ -409,7 +409,7 @@ def flat(armature):
     ("spoil", "named"),
     [
         (spoil_scale, r"scale of Hero = \(1\.0, 1\.0, 1\.2\) is not uniform: apply its scale"),
-        (mirror, r"scale of Hero = \(1\.0, 1\.0, 1\.0\) is negative.*apply its scale"),
+        (mirror, r"scale of Hero = \(-1\.0, 1\.0, 1\.0\) mirrors it.*: apply its scale"),
         (centimetres, r"leg length of Hero = 86\.\d+ is outside 0\.35\.\.1\.8 m: set its scale to 1 "),
         (flat, r"up axis of Hero = .* is far from \(0, 0, 1\): turn it upright"),
     ],
