@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tests.animation.foreign_armatures import JOINTS, with_right_side
+from tests.blender.blender_tools import make_recording
 
 MIXAMO = {
     "pelvis": "Hips",
@@ -97,3 +98,41 @@ def without_scale(matrix: np.ndarray) -> np.ndarray:
     out = matrix.copy()
     out[:3, :3] /= np.linalg.norm(out[:3, :3], axis=0)
     return out
+
+
+def unreal(scene: Any) -> Any:
+    return build_armature(scene, unreal_joints())
+
+
+def metarig(scene: Any) -> Any:
+    return _rigify(scene, basic=False, generate=False)
+
+
+def basic_rig(scene: Any) -> Any:
+    return _rigify(scene, basic=True, generate=True)
+
+
+def human_rig(scene: Any) -> Any:
+    return _rigify(scene, basic=False, generate=True)
+
+
+def _rigify(scene: Any, *, basic: bool, generate: bool) -> Any:
+    import addon_utils
+    import bpy
+
+    addon_utils.enable("rigify", default_set=True)
+    add = bpy.ops.object.armature_basic_human_metarig_add if basic else bpy.ops.object.armature_human_metarig_add
+    add()
+    if generate:
+        bpy.ops.pose.rigify_generate()
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return bpy.context.view_layer.objects.active
+
+
+def bake(core: Any, scene: Any, armature: Any, recording: Any = None, bake_options: Any = None, **options: Any) -> Any:
+    """Bake a recording (default: of one second) on `armature` with `options`."""
+    tools = core("blender.armatures")
+    recording = recording or make_recording(core)
+    return tools.bake_on_armature(
+        recording, scene, armature, None, tools.ArmatureOptions(**options), bake_options or core("spec").BakeSpec()
+    )
