@@ -11,7 +11,16 @@ import pytest
 from ski_addon.errors import MissingInputError, SpecError
 from ski_addon.pipeline import make_plan
 from ski_addon.results import simulate_run
-from ski_addon.spec import PART_KINDS, PRESET_KINDS, SECTIONS, RunSpec, estimate, find_document, list_presets
+from ski_addon.spec import (
+    PART_KINDS,
+    PRESET_KINDS,
+    SECTIONS,
+    RunSpec,
+    estimate,
+    find_document,
+    list_presets,
+    row_kinds,
+)
 from ski_addon.spec.figure_section import KINDS as FIGURE_KINDS
 from ski_addon.turning.figures import build_figure, figure_poses
 from ski_addon.turning.preview import preview_motion
@@ -20,7 +29,7 @@ RUNS = list_presets("runs")
 PHYSICAL = [preset for preset in RUNS if RunSpec.from_toml(preset.path).figure.kind == "alpine"]
 """Runs with the whole physics; the others are for the preview."""
 PARTS = [preset for kind in PART_KINDS for preset in list_presets(kind)]
-SECTION_OF = {"skiers": "skier", "snow": "snow", "styles": "technique"}
+SECTION_OF = {"courses": "course", "skiers": "skier", "snow": "snow", "styles": "technique"}
 PAPER = ("paper_main", "paper_r10", "paper_r25", "paper_fig15")
 LIVELY = ("giant_slalom", "medium_carving", "short_turns")
 
@@ -48,10 +57,11 @@ def test_run_validates_and_is_of_a_size_to_try(preset):
 def test_part_changes_its_own_section_only(preset):
     content = tomllib.loads(preset.path.read_text(encoding="utf-8"))
     section = SECTION_OF[preset.kind]
-    assert set(content) == {"name", "description", section} and len(preset.description) > 10
+    rows = set(row_kinds()) & set(content) if preset.kind == "courses" else set()
+    assert set(content) == {"name", "description", section, *rows} and len(preset.description) > 10
     before = read("giant_slalom")
     after = before.with_part(preset.path)
-    assert dataclasses.replace(after, **{section: getattr(before, section)}) == before
+    assert dataclasses.replace(after, **{key: getattr(before, key) for key in (section, *rows)}) == before
 
 
 @pytest.mark.parametrize("kind", ["snow", "styles"])
@@ -111,7 +121,7 @@ def test_document_is_found_by_path_by_name_and_by_folder(tmp_path):
     [
         ("giant_slalon", ("runs",), "did you mean giant_slalom?"),
         ("zzz", ("runs",), "presets are beginner_turns, b"),
-        ("paper", PART_KINDS, "say skiers/paper or snow/paper or styles/paper"),
+        ("paper", PART_KINDS, "say courses/paper or skiers/paper or snow/paper or styles/paper"),
         ("soft", ("runs",), "there is no such file or preset"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Shipped presets: whole runs and parts (skiers, snow, styles), TOML files beside the library."""
+"""Shipped presets: whole runs and parts (courses, skiers, snow, styles), TOML files beside the library."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import Path
 from ..errors import MissingInputError
 from .document import parse_document, read_text
 
-PART_KINDS = ("skiers", "snow", "styles")
-"""Folders of parts, documents of one section to lay over a run with `RunSpec.with_part`."""
+PART_KINDS = ("courses", "skiers", "snow", "styles")
+"""Folders of parts, documents of some sections (and rows) to lay over a run with `RunSpec.with_part`."""
 PRESET_KINDS = ("runs", *PART_KINDS)
 """Folders of presets: whole runs, and parts."""
 

@@ -12,8 +12,9 @@ HEAD = """\
 # The run document
 
 A run is one TOML file: who skis, on which slope and track, how, on what snow, and how the motion is baked. The command
-line, the sidebar in Blender and the presets all use this document. `presets/runs` holds whole runs; `presets/skiers`,
-`presets/snow` and `presets/styles` hold parts, documents of one section that are laid over a run.
+line, the sidebar in Blender and the presets all use this document. `presets/runs` holds whole runs; `presets/courses`,
+`presets/skiers`, `presets/snow` and `presets/styles` hold parts, documents of one section (and its rows) that are laid
+over a run.
 
 A short one, with all it must have:
 
