@@ -12,6 +12,7 @@ curvature must fall to both sides, which makes arcs of large radii and straight 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -93,23 +94,28 @@ class FairLine:
 
     def _travel(self, down: np.ndarray) -> np.ndarray:
         """Return how far the line has gone to the left since the first of `down` (n,) [m]."""
-        node, weight = np.polynomial.legendre.leggauss(5)
+        node, weight = _gauss(5)
         half = 0.5 * np.diff(down)
         at = 0.5 * (down[1:] + down[:-1])[:, None] + half[:, None] * node
         sine = self.sines(at)
         return np.concatenate(([0.0], np.cumsum(half * ((sine / np.sqrt(1.0 - sine**2)) @ weight))))
 
 
-def fair_line(poles: Poles, lead_in: float, lead_out: float, tolerance: float = 1e-7) -> FairLine:
+def fair_line(
+    poles: Poles, lead_in: float, lead_out: float, tolerance: float = 1e-7, like: FairLine | None = None
+) -> FairLine:
     """Return the smoothest line past `poles`, whose `down` must rise.
 
     It starts `lead_in` [m] before the first pole and ends `lead_out` [m] after the last, straight down the fall line
-    and half-way between turns. `tolerance` says when it has settled, in sines of headings and metres.
+    and half-way between turns. `tolerance` says when it has settled, in sines of headings and metres. The line past
+    nearly the same poles, `like`, saves work.
     """
     begin, end = float(poles.down[0] - lead_in), float(poles.down[-1] + lead_out)
     gaps = np.diff(np.concatenate(([begin], poles.down, [end])))
     most_shift = 0.45 * np.minimum(gaps[1:], gaps[:-1])
     apex, sine, settled = poles.down.astype(float), None, False
+    if like is not None and len(like.apex) == len(poles) and (like.begin, like.end) == (begin, end):
+        apex, sine = np.clip(like.apex, poles.down - most_shift, poles.down + most_shift), like.sine
     share, error = np.full(len(poles), 0.7), np.zeros(len(poles))
     for count in range(_ROUNDS):
         problem = _Problem.at(poles, apex, begin, end)
@@ -165,7 +171,7 @@ class _Problem:
         cells = np.clip(np.ceil(np.diff(stops) / _knot_spacing(poles)), _FEWEST_CELLS, _MOST_CELLS).astype(int)
         inner = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(stops, stops[1:], cells, strict=False)]
         breaks = np.concatenate((*inner, [end]))
-        node, weight = np.polynomial.legendre.leggauss(4)
+        node, weight = _gauss(4)
         half = 0.5 * np.diff(breaks)
         points = (breaks[:-1, None] + half[:, None] * (1.0 + node)).ravel()
         knots = np.concatenate(([begin] * 3, breaks, [end] * 3))
@@ -256,6 +262,12 @@ class _Problem:
         begin, end = poles.ends
         left = np.concatenate(([begin], poles.left - poles.side * poles.distance * np.sqrt(1.0 - at_apex**2), [end]))
         return rows.tocsr(), np.diff(left) - pick @ (slope - gain * old)
+
+
+@functools.cache
+def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes and weights of Gauss and Legendre."""
+    return np.polynomial.legendre.leggauss(count)
 
 
 def _knot_spacing(poles: Poles) -> float:

@@ -91,8 +91,11 @@ def build_gate_track(spec: RunSpec, terrain: Terrain) -> Track:
     return track_on_surface(terrain, down, left, phase, turn, spec.course.start_speed)
 
 
-def gate_line(spec: RunSpec, poles: Poles) -> FairLine:
-    """Return the smoothest line past `poles`, which begins to bend at most a little more than a spacing before them."""
+def gate_line(spec: RunSpec, poles: Poles, tolerance: float = 1e-7, like: FairLine | None = None) -> FairLine:
+    """Return the smoothest line past `poles`, which begins to bend at most a little more than a spacing before them.
+
+    `tolerance` and a line past nearly the same poles, `like`, as for `fair_line`.
+    """
     run_in = run_in_of(spec.course, poles.down)
     gaps = np.diff(poles.down) if len(poles) > 1 else np.array([run_in])
-    return fair_line(poles, min(run_in, MARGIN * float(gaps[0])), MARGIN * float(gaps[-1]))
+    return fair_line(poles, min(run_in, MARGIN * float(gaps[0])), MARGIN * float(gaps[-1]), tolerance, like)

@@ -53,12 +53,12 @@ class Preview:
     problem: SkiAddonError | None
 
 
-def preview_course(spec: RunSpec) -> Preview:
+def preview_course(spec: RunSpec, terrain: Terrain | None = None) -> Preview:
     """Return the preview of a run; a rhythm or path that cannot be kept to ends at that place, with the problem.
 
-    Raises what `preview_motion` raises.
+    `terrain` is that of the run, if it is known already. Raises what `preview_motion` raises.
     """
-    terrain = build_terrain(spec.slope)
+    terrain = terrain or build_terrain(spec.slope)
     believed = as_planned(spec)
     level, stops = isinstance(terrain, PlaneTerrain), spec.course.finish == "stop"
     if spec.course.kind == "rhythm":
@@ -91,11 +91,15 @@ def _of_rhythm(made: RhythmRun, terrain: Terrain) -> TurningMotion:
     return motion_on_ground(made.body, terrain, run.time[kept], place, *values)
 
 
-def preview_track(spec: RunSpec, track: Track, terrain: Terrain) -> TurningMotion:
-    """Return the motion of the leaning body along `track` on `terrain`."""
+Riding = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Even times (n,) [s], and the way [m] and the speed [m/s] of the centre of mass then."""
+
+
+def preview_track(spec: RunSpec, track: Track, terrain: Terrain, riding: Riding | None = None) -> TurningMotion:
+    """Return the motion of the leaning body along `track` on `terrain`, ridden as in `riding` if that is known."""
     body = body_of(spec)
     ups = None if isinstance(terrain, PlaneTerrain) else body_normals(track)
-    time, arc, speed = _ride(spec, track)
+    time, arc, speed = riding or ride_track(spec, track)
     step = time[1]
     first = Way.along(track, ups, step, arc, speed)
     share = _inside(body, first, first.lean(body))  # the ride is that of the centre of mass, on its smaller circle
@@ -111,12 +115,12 @@ def preview_track(spec: RunSpec, track: Track, terrain: Terrain) -> TurningMotio
     return motion if way.up is None else dataclasses.replace(motion, leg_force=_force(body, way, leaning, speed))
 
 
-def _ride(spec: RunSpec, track: Track) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return even times (n,) [s], and arc length [m] and speed [m/s] then."""
+def ride_track(spec: RunSpec, track: Track, step: float = RIDE_STEP) -> Riding:
+    """Return how fast `track` is ridden, integrated in steps of `step` [s]."""
     snow = Snow.of(spec.snow, spec.skier, spec.technique.tuck)
     weight = -(track.surface_normal @ GRAVITY)
     body = Body(weight, np.zeros_like(weight), track.arc_length)
-    ride = plan_ride(track, snow, body, speed_control(spec, track), RIDE_STEP)
+    ride = plan_ride(track, snow, body, speed_control(spec, track), step)
     time = _evenly(float(ride.time[-1]))
     return time, np.interp(time, ride.time, ride.arc_length), np.interp(time, ride.time, ride.speed)
 
