@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -112,24 +113,63 @@ class BoneMap:
 
         A bone may have a prefix that ends with a colon ("mixamorig:Hips"). Missing bones are left out of the map.
         """
-        known = list(bones)
-        short = {name.rpartition(":")[2]: name for name in reversed(known)}
-        actual = {name: name if name in known else short.get(name, "") for name in self._all_names()}
-        entries = tuple(
-            replace(entry, bone=actual[entry.bone], parent=actual[entry.parent] if entry.parent else "")
-            for entry in self.entries
-            if actual[entry.bone]
-        )
-        settings = tuple(replace(item, bone=actual[item.bone]) for item in self.settings if actual[item.bone])
+        actual = self.actual_names(bones)
         wanted = [entry.bone for entry in self.entries if not entry.optional]
         wanted += [name for entry in self.entries if entry.parent for name in [entry.parent]]
         wanted += [item.bone for item in self.settings]
         missing = tuple(dict.fromkeys(name for name in wanted if not actual[name]))
-        return BoneMap(self.name, entries, actual.get(self.root, ""), settings), missing
+        return self.renamed(actual), missing
+
+    def actual_names(self, bones: Iterable[str]) -> dict[str, str]:
+        """Return for every bone that this map names the name that `bones` have for it, "" for one that is missing."""
+        known = list(bones)
+        short = {name.rpartition(":")[2]: name for name in reversed(known)}
+        return {name: name if name in known else short.get(name, "") for name in self._all_names()}
+
+    def renamed(self, names: Mapping[str, str]) -> BoneMap:
+        """Return this map with other `names` of its bones; those without one are left out."""
+        entries = tuple(
+            replace(entry, bone=names[entry.bone], parent=names.get(entry.parent, ""))
+            for entry in self.entries
+            if names.get(entry.bone)
+        )
+        settings = tuple(replace(item, bone=names[item.bone]) for item in self.settings if names.get(item.bone))
+        return BoneMap(self.name, entries, names.get(self.root, ""), settings)
+
+    def to_toml(self) -> str:
+        """Return the document that `load` reads."""
+        lines = [f"name = {_quoted(self.name)}"]
+        lines += [f"root = {_quoted(self.root)}"] if self.root else []
+        lines += ["", "[bones]"]
+        for entry in self.entries:
+            inner = ", ".join(f"{key} = {_written(value)}" for key, value in _plain(entry).items())
+            lines.append(f"{_quoted(entry.bone)} = {{ {inner} }}")
+        for bone in dict.fromkeys(item.bone for item in self.settings):
+            values = [f"{_quoted(item.name)} = {item.value!r}" for item in self.settings if item.bone == bone]
+            lines += ["", f"[settings.{_quoted(bone)}]", *values]
+        return "\n".join(lines) + "\n"
 
     def _all_names(self) -> set[str]:
         names = {*self.bones, *(entry.parent for entry in self.entries), *(item.bone for item in self.settings)}
         return (names | {self.root}) - {""}
+
+
+def _plain(entry: BoneEntry) -> dict[str, object]:
+    """Return a bone's table without what goes without saying."""
+    usual = BoneEntry(entry.bone, entry.body)
+    return {
+        key: getattr(entry, key) for key in _ENTRY_KEYS if key == "body" or getattr(entry, key) != getattr(usual, key)
+    }
+
+
+def _written(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return _quoted(value) if isinstance(value, str) else repr(value)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)  # a JSON string is a TOML string
 
 
 def _entry(bone: str, value: object) -> BoneEntry:

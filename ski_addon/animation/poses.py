@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..body.kinematics import forward_kinematics
 from ..errors import SkiAddonError, SpecError
-from ..frames import Array, matrix_from_quaternion, quaternion_from_matrix
+from ..frames import Array, matrix_from_quaternion, quaternion_from_matrix, quaternion_multiply
 from .interpolation import Bracket, bracket, linear, slerp
 
 if TYPE_CHECKING:
@@ -47,6 +47,14 @@ class BodyPoses:
         out[..., :3, 3] = self.position
         out[..., 3, 3] = 1.0
         return out
+
+    def moved(self, matrix: Array | None) -> BodyPoses:
+        """Return the poses moved by `matrix` (4, 4), a turn and a shift; None moves nothing."""
+        if matrix is None:
+            return self
+        turn = quaternion_from_matrix(matrix[:3, :3])
+        position = self.position @ matrix[:3, :3].T + matrix[:3, 3]
+        return replace(self, position=position, quaternion=quaternion_multiply(turn, self.quaternion))
 
 
 def frame_times(duration: float, fps: float, subframes: int = 1, frame_start: float = 1) -> tuple[Array, Array]:

@@ -95,11 +95,13 @@ def bake_on_armature(
     bone_map: BoneMap | None = None,
     options: ArmatureOptions | None = None,
     bake: BakeSpec | None = None,
+    world_from_run: Array | None = None,
 ) -> ArmatureBake:
     """Bake `recording` on the user's `armature`, at the scene's frame rate, with the map that fits it best by default.
 
-    `bake` gives keys per frame, first frame and the action's name. An earlier bake of this armature is replaced; every
-    other action is kept. Raises `SpecError` with one line, before anything is changed, if the armature cannot be used.
+    `bake` gives keys per frame, first frame and the action's name, `world_from_run` (4, 4) where the run lies.
+    An earlier bake of this armature is replaced; every other action is kept. Raises `SpecError` with one line, before
+    anything is changed, if the armature cannot be used.
     """
     options, bake = options or ArmatureOptions(), bake or BakeSpec()
     check_object(armature)
@@ -110,6 +112,7 @@ def bake_on_armature(
         bone_map, missing = bone_map.resolved(armature.data.bones.keys())
     skeleton = build_skeleton(recorded_skier(recording))
     poses = sample_body_poses(recording, skeleton, scene_rate(scene), bake.subframes, bake.frame_start)
+    poses = poses.moved(world_from_run)
     rest, place = target_rest(armature), _place(armature)
     target = measure_target(bone_map, rest, armature.name)
     scale = check_scale(armature, place)

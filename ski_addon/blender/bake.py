@@ -11,14 +11,18 @@ import bpy
 import numpy as np
 
 from ..animation.bone_map import BoneMap
-from ..animation.keyframes import BoneKeyframes, bone_keyframes
+from ..animation.keyframes import bone_keyframes
 from ..animation.poses import BodyPoses, Channel, sample_body_poses, sample_channels
 from ..body import Skeleton, build_skeleton
 from ..errors import SpecError
+from ..frames import Array
 from ..spec import BakeSpec, RunSpec, SkierSpec
+from .armature_keys import ArmatureKeys
 from .channels import KeyWriter, assign_action, bake_action
+from .frame_rate import scene_rate
 from .rig import build_rig, rest_pose
 from .skier.figure import Figure, build_figure
+from .strips import add_strip, take_strip
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
@@ -31,17 +35,26 @@ SKIER_PROPERTY = "ski_skier"
 
 @dataclass(frozen=True)
 class BakeResult:
-    """What a bake made: the `armature`, its `action`, and its first and last frame (the last may be a part of one)."""
+    """What a bake made: the `armature`, its `action`, its first and last frame (the last may be a part of one), and a
+    `note` for the user, if there is one.
+    """
 
     armature: bpy.types.Object
     action: bpy.types.Action
     frame_first: float
     frame_last: float
+    note: str = ""
 
 
-def scene_rate(scene: bpy.types.Scene) -> float:
-    """Return the frames per second of `scene`, its base included."""
-    return float(scene.render.fps) / float(scene.render.fps_base)
+@dataclass(frozen=True)
+class KeyOptions:
+    """Which keys are written: those that deviate by less than `tolerance_deg` [degrees] or `tolerance_mm` [mm] from
+    their neighbours are left out (0 keeps all); `as_strip` makes a strip instead of the active action.
+    """
+
+    as_strip: bool = False
+    tolerance_deg: float = 0.0
+    tolerance_mm: float = 0.0
 
 
 def recorded_run(recording: Recording) -> RunSpec:
@@ -61,11 +74,14 @@ def bake_recording(
     armature: bpy.types.Object | None = None,
     options: BakeSpec | None = None,
     bone_map: BoneMap | None = None,
+    world_from_run: Array | None = None,
+    keys: KeyOptions | None = None,
 ) -> BakeResult:
     """Bake `recording` in `scene`, at the scene's own frame rate, onto `armature` (default: a new skier).
 
     `options` gives keys per frame, first frame and the action's name; its frame rate is not used. The frame range of
-    scene and action is set. Nothing else of the file is changed, the selection included.
+    scene and action is set. Nothing else of the file is changed, the selection included. `world_from_run` (4, 4) says
+    where in the world the run lies (default: its start is the world's origin); `keys` as in `bake_poses`.
     """
     options = options or BakeSpec()
     skier = recorded_skier(recording)
@@ -75,7 +91,8 @@ def bake_recording(
     if armature is None:
         armature = new_skier(skier, skeleton, scene)
     channels = sample_channels(recording, poses.time)
-    return bake_poses(poses, channels, armature, build_figure(skeleton), bone_map, scene, options.action)
+    poses = poses.moved(world_from_run)
+    return bake_poses(poses, channels, armature, build_figure(skeleton), bone_map, scene, options.action, keys)
 
 
 def bake_poses(
@@ -86,28 +103,41 @@ def bake_poses(
     bone_map: BoneMap,
     scene: bpy.types.Scene,
     name: str,
+    keys: KeyOptions | None = None,
 ) -> BakeResult:
     """Bake `poses` and `channels` of `figure` onto `armature`; `name` is that of a new action.
 
-    The frame range of scene and action is set. Nothing else of the file is changed.
+    `keys` says which keys are left out and whether the action becomes a strip. The frame range of scene and action is
+    set. Nothing else of the file is changed.
     """
+    keys = keys or KeyOptions()
     check_armature(armature, bone_map, poses.body_names)
     rest = rest_pose(armature, bone_map, figure)
     keyframes = bone_keyframes(poses, bone_map, rest, np.array(armature.matrix_world.inverted()))
-    action, slot, channelbag = bake_action(armature, name)
-    writer = KeyWriter(channelbag, poses.frame)
-    _write_bones(armature, keyframes, writer)
-    write_channels(armature, channels, writer)
-    assign_action(armature, action, slot)
+    action, slot, channelbag = bake_action(armature, name, take_strip(armature))
+    for bone_keys in keyframes.channels:
+        armature.pose.bones[bone_keys.bone].rotation_mode = "QUATERNION"
+    ArmatureKeys(armature, channelbag, keys.tolerance_deg, 0.001 * keys.tolerance_mm, 1.0).write_bones(keyframes)
+    write_channels(armature, channels, KeyWriter(channelbag, poses.frame))
     set_range(scene, action, poses.frame)
-    return BakeResult(armature, action, float(poses.frame[0]), float(poses.frame[-1]))
+    note = ""
+    if keys.as_strip:
+        note = add_strip(armature, action, slot)
+    else:
+        assign_action(armature, action, slot)
+    return BakeResult(armature, action, float(poses.frame[0]), float(poses.frame[-1]), note)
 
 
 def new_skier(skier: SkierSpec, skeleton: Skeleton, scene: bpy.types.Scene) -> bpy.types.Object:
     """Make a skier of the measures of `skier` in `scene` and return its armature."""
     armature = build_rig(skeleton, scene).armature
-    armature.data[SKIER_PROPERTY] = _measures(skier)
+    mark_skier(armature, skier)
     return armature
+
+
+def mark_skier(armature: bpy.types.Object, skier: SkierSpec) -> None:
+    """Note in `armature` for whose measures it was made; see `fits`."""
+    armature.data[SKIER_PROPERTY] = _measures(skier)
 
 
 def fits(armature: bpy.types.Object, skier: SkierSpec) -> bool:
@@ -134,15 +164,6 @@ def check_armature(armature: bpy.types.Object, bone_map: BoneMap, bodies: Iterab
         if entry.location and armature.data.bones[entry.bone].use_connect:
             hint = "turn its Connected off, or take location out of the bone map"
             raise SpecError(f"bones.{entry.bone}", None, "", hint, problem="is a connected bone and cannot move")
-
-
-def _write_bones(armature: bpy.types.Object, keyframes: BoneKeyframes, writer: KeyWriter) -> None:
-    for channels in keyframes.channels:
-        armature.pose.bones[channels.bone].rotation_mode = "QUATERNION"
-        path = f'pose.bones["{bpy.utils.escape_identifier(channels.bone)}"]'
-        if channels.location is not None:
-            writer.write(f"{path}.location", channels.location, channels.bone)
-        writer.write(f"{path}.rotation_quaternion", channels.rotation, channels.bone)
 
 
 def write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], writer: KeyWriter) -> None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..frames import Array
 from ..spec import BakeSpec, RunSpec
 from ..terrain import build_terrain
 from ..turning.figures import build_figure, figure_channels, figure_poses
-from .bake import BakeResult, bake_poses, scene_rate
+from ..turning.preview import preview_motion
+from .bake import BakeResult, KeyOptions, bake_poses, scene_rate
+from .ground import Place, renew_ground
 from .ride import figure_bone_map, instant_ride
 from .rig import build_figure_rig
 from .skier.figure import figure_of
@@ -32,6 +35,8 @@ def bake_figure(
     *,
     armature: bpy.types.Object | None = None,
     options: BakeSpec | None = None,
+    world_from_run: Array | None = None,
+    keys: KeyOptions | None = None,
 ) -> BakeResult:
     """Bake `motion` of the figure `model` in `scene`, at the scene's own frame rate, onto `armature` (default: new).
 
@@ -43,16 +48,22 @@ def bake_figure(
     rate = scene_rate(scene)
     poses = figure_poses(model, spec, motion, rate, options.subframes, options.frame_start, terrain=terrain)
     channels = figure_channels(model, spec, motion, poses.time)
+    poses = poses.moved(world_from_run)
     if armature is None:
         armature = new_figure(model, spec, scene)
-    return bake_poses(poses, channels, armature, figure_of(model), figure_bone_map(model), scene, options.action)
+    return bake_poses(poses, channels, armature, figure_of(model), figure_bone_map(model), scene, options.action, keys)
 
 
 def new_figure(model: FigureModel, spec: RunSpec, scene: bpy.types.Scene) -> bpy.types.Object:
     """Make a figure in `scene` and return its armature."""
     armature = build_figure_rig(model, scene).armature
-    armature.data[FIGURE_PROPERTY] = _measures(model, spec)
+    mark_figure(armature, spec)
     return armature
+
+
+def mark_figure(armature: bpy.types.Object, spec: RunSpec) -> None:
+    """Note in `armature` for which person and gear it was made; see `figure_fits`."""
+    armature.data[FIGURE_PROPERTY] = _measures(build_figure(spec), spec)
 
 
 def figure_fits(armature: bpy.types.Object, spec: RunSpec) -> bool:
@@ -82,3 +93,14 @@ def preview_file(spec: RunSpec, motion: TurningMotion, target: str | Path) -> Pa
 def preview_picture(spec: RunSpec, motion: TurningMotion, target: str | Path) -> Path:
     """Write `target`, one picture of the ground with the figure of `spec` at several instants of `motion`."""
     return render_ride(instant_ride(build_figure(spec), spec, motion), spec, target)
+
+
+def instant_ground(
+    spec: RunSpec,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection | None,
+    place: Place | None = None,
+) -> bpy.types.Collection:
+    """Put the slope of `spec`, with the tracks of its preview, into `collection`; see `renew_ground`."""
+    ride = instant_ride(build_figure(spec), spec, preview_motion(spec))
+    return renew_ground(ride, spec, scene, collection, spec.bake, place)
