@@ -10,7 +10,13 @@ from importlib import import_module
 from types import ModuleType
 
 # In the order of registration: properties first, then what uses them.
-_NAMES = ("ski_addon.blender.properties", "operators", "ski_addon.blender.panels")
+_NAMES = (
+    "ski_addon.blender.preferences",
+    "ski_addon.blender.properties",
+    "operators",
+    "ski_addon.blender.panels",
+    "ski_addon.blender.live",
+)
 
 
 def _modules() -> list[ModuleType]:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import bpy
 
-from .bake import SKI_OT_bake
-from .plan import SKI_OT_plan
-from .preset import SKI_OT_reset_to_preset
-from .simulate import SKI_OT_simulate
+from . import analyse, bake, bones, course, plan, preset, rows, simulate, skier
 
-_CLASSES = (SKI_OT_plan, SKI_OT_simulate, SKI_OT_bake, SKI_OT_reset_to_preset)
+_CLASSES = tuple(
+    cls for module in (skier, bones, preset, rows, course, plan, simulate, bake, analyse) for cls in module.CLASSES
+)
 
 
 def register() -> None:

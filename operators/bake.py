@@ -1,16 +1,17 @@
-"""Bake: the recording becomes keyframes."""
+"""Bake: the simulated run, or the instant preview, becomes keyframes."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 
-from ..ski_addon.blender.bake import bake_recording, fits, recorded_run
-from ..ski_addon.blender.cache import load_recording
-from ..ski_addon.blender.ground import update_ground
 from ..ski_addon.blender.jobs import RUNNING
-from ..ski_addon.blender.properties import read_spec, tell
-from ..ski_addon.blender.words import bake_lines
+from ..ski_addon.blender.properties import tell
+from ..ski_addon.blender.shown import required_skier, skier_of
 from .failing import Failed, reported
+
+SIMULATION, PREVIEW = "SIMULATION", "PREVIEW"
 
 
 class SKI_OT_bake(bpy.types.Operator):
@@ -20,33 +21,49 @@ class SKI_OT_bake(bpy.types.Operator):
     bl_label = "Bake"
     bl_options = {"REGISTER", "UNDO"}
 
+    source: bpy.props.EnumProperty(
+        name="Source",
+        description="What is baked",
+        items=[
+            (SIMULATION, "Simulation", "The run that was simulated by physics"),
+            (PREVIEW, "Preview", "The instant motion of the preview, without a simulation"),
+        ],
+        default=SIMULATION,
+        options={"SKIP_SAVE"},
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There must be a recording."""
+        """There must be a skier, and nothing that runs."""
         if RUNNING.text:
+            cls.poll_message_set("Wait for the simulation, or stop it with Esc")
             return False
-        if not context.scene.ski.recording:
-            cls.poll_message_set("Simulate first")
-            return False
-        return True
+        return skier_of(context) is not None
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: Any) -> str:
+        """Return what the button does."""
+        if properties.source == PREVIEW:
+            return "Bake the instant motion of the preview: keyframes at once, without a simulation"
+        return cls.__doc__ or ""
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Bake onto the skier of the last bake, or a new one if the person has other measures."""
-        scene, settings = context.scene, context.scene.ski
+        """Bake onto the skier in the tab."""
         try:
             with reported(self):
-                recording = load_recording(settings.recording)
-                run = recorded_run(recording)
-                armature = settings.armature
-                if armature is not None and not (armature.name in scene.objects and fits(armature, run.skier)):
-                    armature = None
-                options = read_spec(settings).bake
-                result = bake_recording(recording, scene, armature=armature, options=options)
-                settings.armature = result.armature
-                settings.ground = update_ground(recording, run, scene, settings.ground, options)
+                from ..ski_addon.blender.baking import bake_preview, bake_simulation
+                from ..ski_addon.blender.words import bake_lines
+
+                context.view_layer.update()
+                skier = required_skier(context)
+                made = bake_preview if self.source == PREVIEW else bake_simulation
+                run, result = made(context.scene, skier)
         except Failed:
             return {"CANCELLED"}
         lines = bake_lines(result)
-        tell(settings, "bake", run, lines)
+        tell(skier.ski, "bake", run, lines)
         self.report({"INFO"}, " ".join(lines))
         return {"FINISHED"}
+
+
+CLASSES = (SKI_OT_bake,)

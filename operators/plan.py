@@ -5,8 +5,9 @@ from __future__ import annotations
 import bpy
 
 from ..ski_addon.blender.properties import read_spec, tell
+from ..ski_addon.blender.shown import required_skier
 from ..ski_addon.blender.words import plan_lines
-from ..ski_addon.errors import PlanInfeasible
+from ..ski_addon.errors import SkiAddonError
 from .failing import Failed, reported
 
 
@@ -19,15 +20,19 @@ class SKI_OT_plan(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Plan and keep what the plan says."""
-        settings = context.scene.ski
         try:
             with reported(self):
+                from ..ski_addon.blender.slope_taking import check_on_mesh
                 from ..ski_addon.pipeline import make_plan
 
+                context.view_layer.update()  # gates and curves may have been moved a moment ago
+                settings = required_skier(context).ski
                 spec = read_spec(settings)
                 try:
-                    plan = make_plan(spec).plan
-                except PlanInfeasible as infeasible:
+                    planned = make_plan(spec)
+                    check_on_mesh(settings, planned.track)
+                    plan = planned.plan
+                except SkiAddonError as infeasible:
                     tell(settings, "plan", spec, [str(infeasible)], failed=True)
                     raise
         except Failed:
@@ -36,3 +41,6 @@ class SKI_OT_plan(bpy.types.Operator):
         tell(settings, "plan", spec, lines)
         self.report({"INFO"}, lines[0])
         return {"FINISHED"}
+
+
+CLASSES = (SKI_OT_plan,)

@@ -10,7 +10,8 @@ import bpy
 
 from ..ski_addon.blender.cache import save_recording
 from ..ski_addon.blender.jobs import RUNNING, JobRunner, run_to_end, simulation_job
-from ..ski_addon.blender.properties import read_spec, tell
+from ..ski_addon.blender.properties import is_skier, read_spec, tell
+from ..ski_addon.blender.shown import required_skier
 from ..ski_addon.blender.words import ending, recording_lines
 from ..ski_addon.errors import SkiAddonError, SpecError
 from ..ski_addon.spec import RunSpec, estimate
@@ -25,6 +26,7 @@ class SKI_OT_simulate(bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     _spec: RunSpec
+    _skier: str
     _runner: JobRunner | None = None
 
     @classmethod
@@ -36,7 +38,7 @@ class SKI_OT_simulate(bpy.types.Operator):
         """Simulate to the end at once: for scripts and Blender without a window."""
         try:
             self._begin(context)
-            with reported(self), _kept(context.scene.ski, self._spec):
+            with reported(self), _kept(self._settings(), self._spec):
                 recording = run_to_end(simulation_job(self._spec))
             return self._keep(context, recording)
         except Failed:
@@ -66,7 +68,7 @@ class SKI_OT_simulate(bpy.types.Operator):
             elif event.type != "TIMER":
                 return {"PASS_THROUGH"}
             else:
-                with reported(self), _kept(context.scene.ski, self._spec):
+                with reported(self), _kept(self._settings(), self._spec):
                     if runner.slice(context):
                         return {"RUNNING_MODAL"}
             self._end(context)
@@ -81,10 +83,21 @@ class SKI_OT_simulate(bpy.types.Operator):
 
     def _begin(self, context: bpy.types.Context) -> None:
         with reported(self):
-            self._spec = read_spec(context.scene.ski)
+            context.view_layer.update()  # gates and curves may have been moved a moment ago
+            skier = required_skier(context)
+            self._skier = skier.name
+            self._spec = read_spec(skier.ski)
             expected = estimate(self._spec)
             if expected.too_large:
                 raise SpecError("course", problem=f"would take {expected.described}", hint="shorten the course")
+
+    def _settings(self) -> Any:
+        """Return the skier's settings: looked up by name, for undo may have made all objects anew meanwhile."""
+        skier = bpy.data.objects.get(self._skier)
+        if skier is None or not is_skier(None, skier):
+            hint = "the simulation is lost; add a skier and simulate again"
+            raise SpecError("the skier", self._skier, hint=hint, problem="was removed or renamed meanwhile")
+        return skier.ski
 
     def _end(self, context: bpy.types.Context) -> None:
         if self._runner is not None:
@@ -93,12 +106,12 @@ class SKI_OT_simulate(bpy.types.Operator):
 
     def _keep(self, context: bpy.types.Context, recording: Any) -> set[str]:
         """Save the recording, whole or partial, and say how the run ended."""
-        settings = context.scene.ski
         if recording is None or not len(recording.time):
             self.report({"WARNING"}, "Stopped before the first step: nothing was recorded")
             return {"CANCELLED"}
         with reported(self):
-            settings.recording = save_recording(recording, context.scene)
+            settings = self._settings()
+            settings.recording = save_recording(recording, self._skier)
         settings.bake_hash = ""  # what is baked is of another recording now
         finished = recording.status == "finished"
         tell(settings, "simulation", self._spec, recording_lines(recording), failed=not finished)
@@ -114,3 +127,6 @@ def _kept(settings: Any, spec: RunSpec) -> Iterator[None]:
     except SkiAddonError as error:
         tell(settings, "simulation", spec, [str(error)], failed=True)
         raise
+
+
+CLASSES = (SKI_OT_simulate,)

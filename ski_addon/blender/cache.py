@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ..atomic import check_writable_folder
 from ..errors import MissingInputError, OutputError
+from .preferences import preferences
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
@@ -19,11 +21,11 @@ KEPT = 10
 """Recordings of files that were never saved that are kept in the user's cache, newest first."""
 
 
-def save_recording(recording: Recording, scene: bpy.types.Scene) -> str:
-    """Write `recording` and return its path as Blender keeps it (relative to a saved .blend)."""
+def save_recording(recording: Recording, name: str) -> str:
+    """Write `recording` of the skier `name` and return its path as Blender keeps it (relative to a saved .blend)."""
     if bpy.data.filepath:
         blend = Path(bpy.data.filepath)
-        target = blend.parent / FOLDER / f"{_plain(blend.stem)}_{_plain(scene.name)}.npz"
+        target = blend.parent / FOLDER / f"{_plain(blend.stem)}_{_plain(name)}.npz"
         try:
             target.parent.mkdir(exist_ok=True)
             recording.save(target)
@@ -32,10 +34,23 @@ def save_recording(recording: Recording, scene: bpy.types.Scene) -> str:
         else:
             return f"//{FOLDER}/{target.name}"
     folder = user_cache()
-    target = folder / f"{_plain(scene.name)}_{recording.header['spec_hash'][:16]}.npz"
+    target = folder / f"{_plain(name)}_{recording.header['spec_hash'][:16]}.npz"
     recording.save(target)
     _forget_old(folder)
     return str(target)
+
+
+def ground_path(name: str) -> Path:
+    """Return where the heights of the skier `name`'s slope are kept; the folder is there and can be written to."""
+    if bpy.data.filepath:
+        folder = Path(bpy.data.filepath).parent / FOLDER
+        try:
+            check_writable_folder(folder)
+        except OutputError:
+            pass  # the .blend lies where nothing may be written
+        else:
+            return folder / f"{_plain(Path(bpy.data.filepath).stem)}_{_plain(name)}_slope.npz"
+    return user_cache() / f"{_plain(name)}_slope.npz"
 
 
 def load_recording(path: str) -> Recording:
@@ -52,6 +67,14 @@ def load_recording(path: str) -> Recording:
 
 def user_cache() -> Path:
     """Return the user's folder for recordings of files that are not saved, made if it is missing."""
+    known = preferences()
+    if known is not None and known.cache_folder:
+        folder = Path(bpy.path.abspath(known.cache_folder))
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(folder, f"{error.strerror}: choose another folder in the add-on's preferences") from error
+        return folder
     package = __package__.rpartition(".ski_addon.blender")[0]
     try:
         return Path(bpy.utils.extension_path_user(package, path="cache", create=True))
@@ -68,4 +91,4 @@ def _forget_old(folder: Path) -> None:
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"[^\w.-]+", "_", name) or "scene"
+    return re.sub(r"[^\w.-]+", "_", name) or "skier"

@@ -7,6 +7,7 @@ that has the same single-precision bits, so that 0.071 stays 0.071 and the run d
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import bpy
@@ -21,15 +22,20 @@ WORD_SUFFIX = "_word"
 """Ending of the switch that stands for a field's word ("auto", "unlimited")."""
 FILE_SUFFIX = "_file"
 """Ending of the fields that name a file."""
+Changed = Callable[[Any, Any], None]
+"""What Blender calls after a property was changed, with its group and the context."""
 
 
-def make_properties(info: FieldInfo, value: Any) -> dict[str, Any]:
-    """Return the Blender properties of one field by name, with the default `value` of the run document."""
-    common: dict[str, Any] = {"name": info.label or info.name, "description": info.doc}
+def make_properties(info: FieldInfo, value: Any, changed: Changed | None = None) -> dict[str, Any]:
+    """Return the Blender properties of one field by name, with the default `value` of the run document.
+
+    `changed` is called after every change.
+    """
+    common: dict[str, Any] = {"name": info.label or info.name, "description": info.doc, "update": changed}
     if info.kind == FLAG:
         return {info.name: bpy.props.BoolProperty(default=value, **common)}
     if info.kind == CHOICE:
-        items = [(choice, choice.capitalize(), "") for choice in info.choices]
+        items = [(choice, choice.replace("_", " ").capitalize(), "") for choice in info.choices]
         return {info.name: bpy.props.EnumProperty(items=items, default=value, **common)}
     if info.kind == TEXT:
         if info.name.endswith(FILE_SUFFIX):
@@ -41,13 +47,13 @@ def make_properties(info: FieldInfo, value: Any) -> dict[str, Any]:
     return _number_properties(info, value, common)
 
 
-def _number_properties(info: FieldInfo, value: Any, common: dict[str, str]) -> dict[str, Any]:
+def _number_properties(info: FieldInfo, value: Any, common: dict[str, Any]) -> dict[str, Any]:
     made: dict[str, Any] = {}
     number = value
     if info.word:
         switch = f"{common['description']}: {info.word}"
         made[info.name + WORD_SUFFIX] = bpy.props.BoolProperty(
-            name=info.word.capitalize(), description=switch, default=value == info.word
+            name=info.word.capitalize(), description=switch, default=value == info.word, update=common["update"]
         )
         number = _some_number(info) if value == info.word else value
     scale = math.radians(1.0) if info.unit == "deg" else 1.0
@@ -68,7 +74,7 @@ def _number_properties(info: FieldInfo, value: Any, common: dict[str, str]) -> d
 def _some_number(info: FieldInfo) -> float:
     """Return a number to start from for a field that has a word now."""
     low, high = float(info.low or 0.0), float(info.high or 1.0)
-    return round(low + 0.4 * (high - low), 2)
+    return round(math.sqrt(low * high) if low > 0.0 else low + 0.4 * (high - low), 2)
 
 
 def read_field(group: Any, info: FieldInfo) -> Any:

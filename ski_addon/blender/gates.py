@@ -10,7 +10,7 @@ import numpy as np
 
 from ..animation.gate_motion import POLE_LENGTH, GateSwing
 from ..course import Gates, course_gates
-from ..frames import Array
+from ..frames import Array, quaternion_multiply
 from ..spec import RunSpec
 from ..spec.gate_defaults import SLALOM_SPACING_MAX
 from ..terrain import Terrain
@@ -23,6 +23,9 @@ POLE_RADIUS = 0.016
 """Half thickness of a pole [m]."""
 PANEL_WIDTH, PANEL_HEIGHT, PANEL_LOW = 0.75, 0.50, 1.05
 """Distance between a gate's two poles, height of its panel and of the panel's lower edge over the snow [m]."""
+COLOURS = ("red", "blue")
+PART = "ski_gate_part"
+"""Custom property of the outer pole and the panel of a gate put by hand: which of the two it is."""
 _BURIED = 0.30
 _PAINTS = {
     "red": Paint("d1202b", 0.40),
@@ -47,18 +50,62 @@ def build_gates(spec: RunSpec, terrain: Terrain, collection: bpy.types.Collectio
     wide = has_panels(gates)
     built = []
     for index, (foot, side) in enumerate(zip(gates.position, gates.side.tolist(), strict=True)):
-        name, colour = f"Gate {index + 1}", ("red", "blue")[index % 2]
+        name, colour = f"Gate {index + 1}", COLOURS[index % 2]
         pole = _shared(meshes, f"{colour} pole", partial(_pole, colour))
         objects = [_stand(name, pole, foot, collection)]
         if wide:
             x, y = foot[0], foot[1] + side * PANEL_WIDTH
             outer = np.array((x, y, float(terrain.height(x, y))))
-            key = f"{colour} panel {'left' if side > 0 else 'right'}"
-            panel = _shared(meshes, key, partial(_panel, colour, side))
+            key, make = _panel_mesh(colour, side)
             objects.append(_stand(f"{name} outer", pole, outer, collection))
-            objects.append(_stand(f"{name} panel", panel, foot, collection))
+            objects.append(_stand(f"{name} panel", _shared(meshes, key, make), foot, collection))
         built.append(objects)
     return built
+
+
+def stand_pole(collection: bpy.types.Collection, index: int) -> bpy.types.Object:
+    """Return a new turning pole in `collection`, for a gate that is put and moved by hand; see `dress_gate`."""
+    return _stand(f"Gate {index + 1}", _kept(f"{COLOURS[index % 2]} pole", _pole_of(index)), np.zeros(3), collection)
+
+
+def dress_gate(pole: bpy.types.Object, index: int, side: float) -> None:
+    """Give a gate put by hand its number and colour, and a panel to the left (`side` 1), right (-1) or none (0).
+
+    What of it stands there already is used again. Outer pole and panel go with the turning pole.
+    """
+    colour = COLOURS[index % 2]
+    pole.name, pole.data = f"Gate {index + 1}", _kept(f"{colour} pole", _pole_of(index))
+    parts = {child[PART]: child for child in pole.children if PART in child}
+    if not side:
+        for part in parts.values():
+            bpy.data.objects.remove(part)
+        return
+    key, make = _panel_mesh(colour, side)
+    wanted = {"outer": pole.data, "panel": _kept(key, make)}
+    for name, mesh in wanted.items():
+        part = parts.get(name)
+        if part is None:
+            part = _stand("", mesh, np.zeros(3), pole.users_collection[0])
+            part.parent, part[PART] = pole, name
+        part.data, part.name = mesh, f"{pole.name} {name}"
+        part.location = (0.0, side * PANEL_WIDTH if name == "outer" else 0.0, 0.0)
+
+
+def _pole_of(index: int) -> Callable[[], Part]:
+    return partial(_pole, COLOURS[index % 2])
+
+
+def _panel_mesh(colour: str, side: float) -> tuple[str, Callable[[], Part]]:
+    return f"{colour} panel {'left' if side > 0 else 'right'}", partial(_panel, colour, side)
+
+
+def _kept(name: str, make: Callable[[], Part]) -> bpy.types.Mesh:
+    """Return a mesh that all gates put by hand share, made on first use."""
+    mesh = bpy.data.meshes.get(f"Ski gate {name}")
+    if mesh is None:
+        mesh = _shared({}, name, make)
+        mesh.name = f"Ski gate {name}"
+    return mesh
 
 
 def pose_gates(gates: list[list[bpy.types.Object]], swings: list[GateSwing | None], time: Array) -> None:
@@ -71,14 +118,21 @@ def pose_gates(gates: list[list[bpy.types.Object]], swings: list[GateSwing | Non
 
 
 def bake_gates(
-    gates: list[list[bpy.types.Object]], swings: list[GateSwing | None], rate: float, frame_start: float
+    gates: list[list[bpy.types.Object]],
+    swings: list[GateSwing | None],
+    rate: float,
+    frame_start: float,
+    turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0),
 ) -> None:
-    """Give `gates` keys on the frames during which they swing, at `rate` [frames/s]; time 0 is `frame_start`."""
+    """Give `gates` keys on the frames during which they swing, at `rate` [frames/s]; time 0 is `frame_start`.
+
+    `turn` is the quaternion of the run's frame in the world.
+    """
     for objects, swing in zip(gates, swings, strict=True):
         if swing is None:
             continue
         frame = np.arange(np.floor(swing.time[0] * rate), np.ceil(swing.time[-1] * rate) + 1.0)
-        turns = swing.quaternion(swing.at(frame / rate))
+        turns = quaternion_multiply(np.array(turn), swing.quaternion(swing.at(frame / rate)))
         action, slot, channelbag = bake_action(objects[0], objects[0].name)
         KeyWriter(channelbag, frame_start + frame).write("rotation_quaternion", turns, "Gate")
         for obj in objects:  # they move as one
@@ -118,7 +172,7 @@ def _pole(colour: str) -> Part:
     )
 
 
-def _panel(colour: str, side: int) -> Part:
+def _panel(colour: str, side: float) -> Part:
     """Return the panel of a gate whose turning pole stands at the origin and whose outer pole on that `side`."""
     sleeve = box((0.006, PANEL_WIDTH + 2.4 * POLE_RADIUS, PANEL_HEIGHT), f"{colour} panel", 0.005)
     return sleeve.moved((0.0, 0.5 * side * PANEL_WIDTH, PANEL_LOW + 0.5 * PANEL_HEIGHT))

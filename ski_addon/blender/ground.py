@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import bpy
@@ -12,6 +13,7 @@ from ..spec import BakeSpec
 from ..terrain import build_terrain
 from .bake import scene_rate
 from .channels import MARK as BAKED
+from .gate_placing import GROUND_MARK
 from .gates import bake_gates, build_gates
 from .obstacles import build_obstacles
 from .ride import Ride, recorded_ride
@@ -23,7 +25,18 @@ if TYPE_CHECKING:
     from ..simulation.recording import Recording
     from ..spec import RunSpec
 
-MARK = "ski_addon_ground"
+MARK = GROUND_MARK
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a run lies: `start`, the object that carries its frame (None: the world's), whether a mesh of the user is
+    the slope (`own_slope`), and the objects of each gate that stands there already (`gates`).
+    """
+
+    start: bpy.types.Object | None = None
+    own_slope: bool = False
+    gates: list[list[bpy.types.Object]] = field(default_factory=list)
 
 
 def update_ground(
@@ -32,10 +45,11 @@ def update_ground(
     scene: bpy.types.Scene,
     collection: bpy.types.Collection | None,
     options: BakeSpec | None = None,
+    place: Place | None = None,
 ) -> bpy.types.Collection:
     """Put slope and tracks of `recording` into `collection`; see `renew_ground`."""
     ride = recorded_ride(recording, build_skeleton(spec.skier))
-    return renew_ground(ride, spec, scene, collection, options)
+    return renew_ground(ride, spec, scene, collection, options, place)
 
 
 def renew_ground(
@@ -44,28 +58,53 @@ def renew_ground(
     scene: bpy.types.Scene,
     collection: bpy.types.Collection | None,
     options: BakeSpec | None = None,
+    place: Place | None = None,
 ) -> bpy.types.Collection:
     """Put slope and tracks of `ride` into `collection` (default: a new one in `scene`) and return it.
 
     Gates go into the collection "Gates" within it, with keys where the skier knocks them over; `options` gives the
-    first frame. What an earlier bake put there is replaced; what the user put there stays.
+    first frame, `place` where all of it lies. What an earlier bake put there is replaced; what the user put there
+    stays.
     """
     if collection is None:
         collection = bpy.data.collections.new("Ski slope")
         scene.collection.children.link(collection)
     _clear(collection)
+    place = place or Place()
     terrain, track = build_terrain(spec.slope), np.asarray(ride.timeline.track_position)
-    made = [build_slope(terrain, track, collection, far=(), snow=ride.on_snow)]
+    made = [] if place.own_slope else [build_slope(terrain, track, collection, far=(), snow=ride.on_snow)]
     made += build_traces(ride.traces, terrain, collection)
     if spec.course.kind == "gates":
-        gates = build_gates(spec, terrain, _gates_within(collection))
+        gates = place.gates or build_gates(spec, terrain, _gates_within(collection))
         swings = swings_of(ride, spec, terrain)
-        bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start)
-        made += [obj for objects in gates for obj in objects]
+        if not place.gates:
+            _put_gates(gates, place.start)
+        if len(swings) == len(gates):  # gates that stand there may be others than those of an older recording
+            bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start, _turn(place.start))
+        for obj in [] if place.gates else [obj for objects in gates for obj in objects]:
+            obj[MARK] = True
     made += build_obstacles(spec, terrain, collection, snow=ride.on_snow)
     for obj in made:
         obj[MARK] = True
+        obj.parent = place.start
     return collection
+
+
+def _put_gates(gates: list[list[bpy.types.Object]], start: bpy.types.Object | None) -> None:
+    """Put new gates where the run lies. They have no parent: Blender would draw a line from each one to it."""
+    if start is None:
+        return
+    for obj in [obj for objects in gates for obj in objects]:
+        obj.location = start.matrix_world @ obj.location
+        obj.rotation_quaternion = _turn(start)
+
+
+def _turn(start: bpy.types.Object | None) -> tuple[float, float, float, float]:
+    """Return the quaternion of a start object's turn about the vertical."""
+    if start is None:
+        return 1.0, 0.0, 0.0, 0.0
+    w, x, y, z = start.matrix_world.to_quaternion()
+    return w, x, y, z
 
 
 def _clear(collection: bpy.types.Collection) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 SLICE_SECONDS = 0.08
 """Time to compute between two looks at the window: long slices, because every look costs a redraw."""
 REDRAW_SECONDS = 0.25
+DRAWING_SHARE, LONGEST_PAUSE = 0.15, 2.0
+"""Drawing takes at most this share of the time, as far as the sidebar is still drawn every so many seconds."""
 STEPS = 20
 """Simulation steps between two looks at the clock."""
 
@@ -68,7 +70,8 @@ class JobRunner:
     def __init__(self, job: Job, context: bpy.types.Context) -> None:
         self._job = job
         self._started = time.monotonic()
-        self._drawn = 0.0
+        self._drawn = self._left = 0.0
+        self._pause = REDRAW_SECONDS
         self.result: Recording | None = None
         window_manager = context.window_manager
         self._timer = window_manager.event_timer_add(0.01, window=context.window)
@@ -78,7 +81,10 @@ class JobRunner:
 
     def slice(self, context: bpy.types.Context) -> bool:
         """Compute for one slice; return True while there is more to do. The job's own errors pass through."""
-        until = time.monotonic() + SLICE_SECONDS
+        now = time.monotonic()
+        if self._left and self._left - self._drawn < 0.01:  # it was drawn since the slice before
+            self._pause = min(max(REDRAW_SECONDS, (now - self._left) / DRAWING_SHARE), LONGEST_PAUSE)
+        until = now + SLICE_SECONDS
         try:
             while time.monotonic() < until:
                 fraction, text = next(self._job)
@@ -86,8 +92,9 @@ class JobRunner:
             self.result = finished.value
             return False
         now = time.monotonic()
-        if now - self._drawn >= REDRAW_SECONDS:
+        if now - self._drawn >= self._pause:
             self._show(context, fraction, text + self._time_left(now, fraction))
+        self._left = time.monotonic()
         return True
 
     def stop(self) -> None:

@@ -1,157 +1,431 @@
-"""The Ski tab of the 3D view's sidebar."""
+"""The Ski tab of the 3D view's sidebar: one panel a step of the work, in its order."""
 
 from __future__ import annotations
 
-import textwrap
+from collections.abc import Callable
 from typing import Any
 
 import bpy
 
 from ..dependencies import missing_dependencies
-from ..errors import SpecError
-from ..spec import find_field
-from .fields import WORD_SUFFIX
+from ..spec import row_kinds
+from . import live
+from .course_objects import gate_fields
 from .jobs import RUNNING
-from .properties import preset_specs, read_spec
+from .own_presets import find_preset
+from .panel_fields import EXPERT, MORE, draw_field, draw_fields, draw_rows, folded_fields, row_words, top_fields
+from .panel_stages import columns_of, draw_progress, draw_result, draw_words
+from .preferences import is_expert
+from .preset_menus import CLASSES as MENUS
+from .preset_menus import draw_menu_button
+from .properties import run_hash
+from .shown import settings_of, skier_of, skiers
 
-SHOWN = {
-    "Skier": ("skier.mass", "skier.height"),
-    "Slope": ("slope.angle_deg", "snow.friction"),
-    "Turns": (
-        "course.turn_count",
-        "course.first_turn",
-        "course.turn_radius",
-        "course.turn_duration",
-        "course.transition_duration",
-        "course.start_speed",
-        "course.half_first_turn",
-    ),
-}
-"""Keys of the run document that the tab shows, by heading."""
+SPACE = {"bl_space_type": "VIEW_3D", "bl_region_type": "UI", "bl_category": "Ski"}
+PHYSICS_ONLY = "alpine"
+"""The kind of figure that the whole physics is for."""
 
 
-class SKI_PT_main(bpy.types.Panel):
-    """Ski: from a track to keyframes."""
+class SKI_UL_rows(bpy.types.UIList):
+    """Rows of a run: gates, times of a rhythm, obstacles or pushes."""
 
-    bl_label = "Ski"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ski"
+    def draw_item(
+        self, _context: Any, layout: Any, _data: Any, item: Any, _icon: Any, _active_data: Any, _active_property: Any
+    ) -> None:
+        """Draw one row in a few words."""
+        layout.label(text=row_words(item, self.list_id))
+
+
+class SKI_UL_bones(bpy.types.UIList):
+    """Bones of a user's own armature, and what they follow."""
+
+    def draw_item(
+        self, _context: Any, layout: Any, _data: Any, item: Any, _icon: Any, _active_data: Any, _active_property: Any
+    ) -> None:
+        """Draw one bone; those without one are marked."""
+        split = layout.split(factor=0.45)
+        split.label(text=item.wanted)
+        split.label(text=item.bone or "none", icon="BONE_DATA" if item.bone else "ERROR")
+
+
+class SKI_PT_skier(bpy.types.Panel):
+    """Who skis."""
+
+    bl_label = "Skier"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draw the menu of persons."""
+        if skier_of(context) is not None:
+            draw_menu_button(self.layout, "skiers")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the whole tab."""
-        layout, settings = self.layout, context.scene.ski
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        """Draw how to get a skier, or whose run the tab shows."""
+        layout, skier = _prepared(self.layout), skier_of(context)
         missing = missing_dependencies()
         if missing:
-            _draw_missing(layout, missing, _columns(context))
-        _draw_settings(layout, settings)
-        run_hash = _run_hash(settings)
-        stages = layout.column()
-        stages.use_property_split = False
-        for stage, operator, icon in (
-            ("plan", "ski.plan", "CURVE_PATH"),
-            ("simulation", "ski.simulate", "PHYSICS"),
-            ("bake", "ski.bake", "KEYFRAME_HLT"),
-        ):
-            row = stages.column()
+            remedy = "install the Ski Addon zip for this system again; without them nothing can be simulated"
+            said = f"Parts of the add-on are missing ({', '.join(missing)}): {remedy}"
+            draw_words(layout, said, columns_of(context), "ERROR", alert=True)
+        if len(skiers(context.scene)) > 1:
+            layout.prop(context.scene, "ski_skier", text="Shown")
+        if skier is None:
+            _draw_beginning(layout)
+            return
+        settings = skier.ski
+        row = layout.row(align=True)
+        row.label(text=skier.name, icon="ARMATURE_DATA" if settings.is_own else "OUTLINER_OB_ARMATURE")
+        row.operator("ski.add_skier", text="", icon="ADD")
+        row = layout.row(align=True)
+        draw_menu_button(row, "runs", _preset_name(settings))
+        if _is_changed(settings):
+            row.operator("ski.reset_to_preset", text="", icon="LOOP_BACK")
+        if settings.is_own:
+            _draw_bones(layout, skier)
+        draw_fields(layout, settings, top_fields(settings, "figure") + top_fields(settings, "skier"))
+        from .skiers import wears_shown
+
+        if not wears_shown(skier):
+            layout.operator("ski.fit_figure", icon="FILE_REFRESH")
+
+
+class SKI_PT_slope(bpy.types.Panel):
+    """Where it goes down."""
+
+    bl_label = "Slope"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the slope's shape, or the mesh that is the slope."""
+        layout, settings = _prepared(self.layout), settings_of(context)
+        draw_fields(layout, settings, top_fields(settings, "slope"))
+        layout.operator("ski.make_slope", icon="MESH_GRID")
+        column = layout.column(align=True)
+        column.prop(settings, "slope_mesh", text="Or a Mesh")
+        if settings.slope_mesh is not None:
+            column.prop(settings, "slope_resolution")
+            column.operator("ski.sample_slope", icon="SNAP_FACE")
+            if settings.slope_said:
+                column.label(text=settings.slope_said)
+        layout.prop(settings, "start")
+
+
+class SKI_PT_course(bpy.types.Panel):
+    """Where the skis go."""
+
+    bl_label = "Course"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Draw the menu of courses."""
+        draw_menu_button(self.layout, "courses")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw turns, gates, bumps, path or rhythm, and what the preview says of them."""
+        layout, settings = _prepared(self.layout), settings_of(context)
+        draw_fields(layout, settings, top_fields(settings, "course"))
+        kind = settings.course.kind
+        if kind == "gates":
+            _draw_gates(layout, context, settings)
+        if kind in ("path", "follow"):
+            layout.prop(settings, "curve")
+        if kind == "rhythm":
+            draw_rows(layout, settings, "rhythm")
+        if kind == "follow":
+            draw_rows(layout, settings, "obstacle")
+        row = layout.row(align=True)
+        row.prop(context.scene, "ski_preview", toggle=True)
+        row.prop(context.scene, "ski_preview_figure", toggle=True)
+        preview = live.STATE.preview
+        if preview is not None and preview.problem:
+            draw_words(layout, preview.problem, columns_of(context), "ERROR", alert=True)
+
+
+class SKI_PT_technique(bpy.types.Panel):
+    """How it is skied."""
+
+    bl_label = "Technique"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Draw the menu of styles."""
+        draw_menu_button(self.layout, "styles")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the fields of the style."""
+        settings = settings_of(context)
+        draw_fields(_prepared(self.layout), settings, top_fields(settings, "technique"))
+
+
+class SKI_PT_snow(bpy.types.Panel):
+    """What the skis run on."""
+
+    bl_label = "Snow"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Draw the menu of snow."""
+        draw_menu_button(self.layout, "snow")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the fields of the snow."""
+        settings = settings_of(context)
+        draw_fields(_prepared(self.layout), settings, top_fields(settings, "snow"))
+
+
+class SKI_PT_simulate(bpy.types.Panel):
+    """Ski it by physics."""
+
+    bl_label = "Simulate"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw Plan and Simulate with their answers."""
+        layout, settings, columns = self.layout, settings_of(context), columns_of(context)
+        if settings.figure.kind != PHYSICS_ONLY:
+            draw_words(layout, "The physics is for alpine skiers: bake the preview of this figure", columns, "INFO")
+            return
+        asked = run_hash(settings)
+        _draw_stage(layout, "ski.plan", "CURVE_PATH", not missing_dependencies())
+        draw_result(layout, settings, "plan", asked, columns)
+        _draw_stage(layout, "ski.simulate", "PHYSICS", not missing_dependencies())
+        if RUNNING.text:
+            draw_progress(layout, columns)
+        else:
+            draw_result(layout, settings, "simulation", asked, columns)
+
+
+class SKI_PT_bake(bpy.types.Panel):
+    """Make keyframes of it."""
+
+    bl_label = "Bake"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the ways to bake and what the last one made."""
+        layout, settings, columns = _prepared(self.layout), settings_of(context), columns_of(context)
+        draw_fields(layout, settings, top_fields(settings, "bake"))
+        layout.prop(settings, "as_strip")
+        column = layout.column(align=True)
+        column.prop(settings, "tolerance_deg")
+        column.prop(settings, "tolerance_mm")
+        if settings.is_own:
+            column = layout.column(align=True)
+            for name in ("root_motion", "legs", "equipment"):
+                column.prop(settings, name)
+        if settings.figure.kind == PHYSICS_ONLY:
+            row = layout.column()
             row.scale_y = 1.3
-            row.enabled = not RUNNING.text and not (missing and stage != "bake")
-            row.operator(operator, icon=icon)
-            if stage == "simulation" and RUNNING.text:
-                _draw_progress(stages, _columns(context))
-            else:
-                _draw_result(stages, settings, stage, run_hash, _columns(context))
+            row.enabled = bool(settings.recording) and not RUNNING.text
+            row.operator("ski.bake", icon="KEYFRAME_HLT").source = "SIMULATION"
+        if not settings.is_own:
+            row = layout.column()
+            row.enabled = not RUNNING.text
+            row.operator("ski.bake", text="Bake Preview", icon="KEYFRAME").source = "PREVIEW"
+        draw_result(layout, settings, "bake", run_hash(settings), columns)
 
 
-def _columns(context: bpy.types.Context) -> int:
-    """Return about how many characters fit into a line of the sidebar."""
-    scale = context.preferences.system.ui_scale or 1.0  # 0 without a window
-    return max(20, int((context.region.width - 50 * scale) / (6.6 * scale)))
+class SKI_PT_analyse(bpy.types.Panel):
+    """Look into it."""
+
+    bl_label = "Analyse"
+    bl_space_type, bl_region_type, bl_category = SPACE.values()
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw what shows the recording."""
+        layout, settings = self.layout, settings_of(context)
+        layout.enabled = bool(settings.recording)
+        layout.operator("ski.show_report", icon="IMAGE_DATA")
+        layout.operator("ski.toggle_overlay", icon="OVERLAY", depress=live.STATE.overlay == settings.id_data.name)
 
 
-def _draw_missing(layout: Any, missing: list[str], columns: int) -> None:
-    box = layout.box().column(align=True)
-    box.alert = True
-    box.label(text="Parts of the add-on are missing", icon="ERROR")
-    remedy = "Install the Ski Addon zip for this system again; without them nothing can be simulated."
-    said = f"Not found: {', '.join(missing)}. {remedy}"
-    for line in textwrap.wrap(said, columns):
-        box.label(text=line)
+def _prepared(layout: Any) -> Any:
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    return layout
 
 
-def _draw_settings(layout: Any, settings: Any) -> None:
-    changed = _changed(settings)
+def _draw_beginning(layout: Any) -> None:
+    """Draw how to get a first skier."""
+    column = layout.column()
+    column.scale_y = 1.4
+    column.operator("ski.add_skier", icon="ADD")
+    layout.menu("SKI_MT_add_skier", icon="PRESET")
+    layout.operator("ski.use_armature", icon="ARMATURE_DATA")
+
+
+def _draw_bones(layout: Any, armature: bpy.types.Object) -> None:
+    """Draw the table of bones of an armature of the user's own."""
+    settings = armature.ski
     row = layout.row(align=True)
-    row.prop(settings, "preset")
-    if changed:
-        row.operator("ski.reset_to_preset", text="", icon="LOOP_BACK")
-    for heading, keys in SHOWN.items():
-        column = layout.column(align=True, heading=heading) if len(keys) == 1 else layout.column(align=True)
-        column.label(text=heading)
-        for key in keys:
-            _draw_field(column, settings, key)
-
-
-def _draw_field(column: Any, settings: Any, key: str) -> None:
-    info = find_field(key)
-    group = getattr(settings, info.section)
-    if not info.word:
-        column.prop(group, info.name)
+    row.operator("ski.find_bones", icon="BONE_DATA")
+    if not len(settings.bones):
         return
+    row.operator("ski.save_bone_map", text="", icon="ADD")
+    layout.template_list("SKI_UL_bones", "", settings, "bones", settings, "bones_index", rows=5)
+    if 0 <= settings.bones_index < len(settings.bones):
+        chosen = settings.bones[settings.bones_index]
+        layout.prop_search(chosen, "bone", armature.data, "bones", text=chosen.wanted)
+
+
+def _draw_stage(layout: Any, operator: str, icon: str, possible: bool) -> None:
+    row = layout.column()
+    row.scale_y = 1.3
+    row.enabled = not RUNNING.text and possible
+    row.operator(operator, icon=icon)
+
+
+def _draw_gates(layout: Any, context: bpy.types.Context, settings: Any) -> None:
+    column = layout.column(align=True)
+    column.operator("ski.place_gates", icon="GREASEPENCIL")
     row = column.row(align=True)
-    value = row.row(align=True)
-    value.enabled = not getattr(group, info.name + WORD_SUFFIX)
-    value.prop(group, info.name)
-    row.prop(group, info.name + WORD_SUFFIX, toggle=True)
-
-
-def _run_hash(settings: Any) -> str:
-    try:
-        return read_spec(settings).content_hash()
-    except SpecError:
-        return ""
-
-
-def _changed(settings: Any) -> bool:
-    preset = preset_specs().get(settings.preset)
-    return preset is None or preset.content_hash() != _run_hash(settings)
-
-
-def _draw_progress(layout: Any, columns: int) -> None:
-    layout.progress(factor=RUNNING.fraction, text=f"{RUNNING.fraction:.0%}")
-    box = layout.box().column(align=True)
-    for line in textwrap.wrap(RUNNING.text, columns):
-        box.label(text=line)
-    box.label(text="Esc: stop and keep what is done")
-
-
-def _draw_result(layout: Any, settings: Any, stage: str, run_hash: str, columns: int) -> None:
-    text = getattr(settings, f"{stage}_text")
-    if not text:
+    row.operator_menu_enum("ski.set_gates", "discipline", text="Set Course")
+    row.operator("ski.refresh_gates", text="", icon="SORTSIZE")
+    row.operator("ski.clear_gates", text="", icon="TRASH")
+    if settings.course.gate_setting != "list":
         return
-    failed = getattr(settings, f"{stage}_failed")
-    box = layout.box().column(align=True)
-    if getattr(settings, f"{stage}_hash") != run_hash:
-        box.label(text="From before the last change:", icon="TIME")
-        box = box.column(align=True)
-        box.active = False
-    first = True
-    for line in text.split("\n"):
-        for part in textwrap.wrap(line, columns if not first else columns - 3):
-            if first:
-                box.label(text=part, icon="ERROR" if failed else "CHECKMARK")
-            else:
-                box.label(text=part)
-            first = False
+    gate = context.object
+    if gate is not None and gate.ski_gate.is_gate:
+        box = layout.box().column(align=True)
+        box.label(text=gate.name, icon="OUTLINER_OB_FORCE_FIELD")
+        for info in gate_fields():
+            draw_field(box, gate.ski_gate, info)
+    if settings.gates is None or not settings.gates.all_objects:
+        draw_rows(layout, settings, "gate")
+        layout.prop(settings, "curve", text="Or a Curve")
+
+
+def _preset_name(settings: Any) -> str:
+    from ..errors import SkiAddonError
+
+    try:
+        return find_preset("runs", settings.preset).name
+    except SkiAddonError:
+        return "Presets"
+
+
+def _is_changed(settings: Any) -> bool:
+    from ..errors import SkiAddonError
+    from ..spec import RunSpec
+    from .own_presets import laid_over
+
+    try:
+        return laid_over(RunSpec(), "runs", settings.preset).content_hash() != run_hash(settings)
+    except SkiAddonError:
+        return False
+
+
+def _folded(parent: str, sections: tuple[str, ...], level: str, draw_more: Callable[[Any, Any], None] | None) -> type:
+    """Return a closed panel within `parent` with the fields of `sections` that are not on top."""
+    label = "More" if level == MORE else "Expert"
+
+    def infos(settings: Any) -> list[Any]:
+        return [info for section in sections for info in folded_fields(settings, section, level)]
+
+    def poll(_cls: type, context: Any) -> bool:
+        skier = skier_of(context)
+        if skier is None or (level == EXPERT and not is_expert(context)):
+            return False
+        return draw_more is not None or bool(infos(skier.ski))
+
+    def draw(self: Any, context: Any) -> None:
+        settings, layout = settings_of(context), _prepared(self.layout)
+        draw_fields(layout, settings, infos(settings))
+        if draw_more is not None:
+            draw_more(layout, settings)
+
+    name = f"{parent}_{level}"
+    content = {
+        **SPACE,
+        "__doc__": f"{label} of it.",
+        "bl_label": label,
+        "bl_parent_id": parent,
+        "bl_options": {"DEFAULT_CLOSED"},
+        "poll": classmethod(poll),
+        "draw": draw,
+    }
+    return type(name, (bpy.types.Panel,), content)
+
+
+def _draw_pushes(layout: Any, settings: Any) -> None:
+    layout.label(text=row_kinds()["push"].label)
+    draw_rows(layout, settings, "push")
+
+
+CLASSES = (
+    *MENUS,
+    SKI_UL_rows,
+    SKI_UL_bones,
+    SKI_PT_skier,
+    _folded("SKI_PT_skier", ("figure", "skier"), MORE, None),
+    _folded("SKI_PT_skier", ("figure", "skier"), EXPERT, None),
+    SKI_PT_slope,
+    _folded("SKI_PT_slope", ("slope",), MORE, None),
+    _folded("SKI_PT_slope", ("slope",), EXPERT, None),
+    SKI_PT_course,
+    _folded("SKI_PT_course", ("course",), MORE, None),
+    _folded("SKI_PT_course", ("course",), EXPERT, None),
+    SKI_PT_technique,
+    _folded("SKI_PT_technique", ("technique",), MORE, None),
+    _folded("SKI_PT_technique", ("technique",), EXPERT, None),
+    SKI_PT_snow,
+    _folded("SKI_PT_snow", ("snow",), MORE, None),
+    _folded("SKI_PT_snow", ("snow",), EXPERT, None),
+    SKI_PT_simulate,
+    _folded("SKI_PT_simulate", ("simulation",), EXPERT, _draw_pushes),
+    SKI_PT_bake,
+    _folded("SKI_PT_bake", ("bake",), MORE, None),
+    _folded("SKI_PT_bake", ("bake",), EXPERT, None),
+    SKI_PT_analyse,
+)
 
 
 def register() -> None:
     """Add the tab."""
-    bpy.utils.register_class(SKI_PT_main)
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
 
 
 def unregister() -> None:
     """Take the tab away."""
-    bpy.utils.unregister_class(SKI_PT_main)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

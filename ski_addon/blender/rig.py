@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from ..turning.figures import FigureModel
 
 ROOT = "root"
+PART_PROPERTY = "ski_part"
+"""Custom property of a figure's mesh objects: which part of it they are."""
 NAMES = {"alpine": "Skier", "snowboard": "Snowboarder", "telemark": "Telemark skier", "bicycle": "Cyclist"}
 """What the armature of each kind of figure is called."""
 
@@ -57,10 +59,37 @@ def build_rig_of(figure: Figure, scene: bpy.types.Scene, name: str | None = None
     scene.collection.children.link(collection)
     armature = _armature_object(figure, name)
     collection.objects.link(armature)
+    return _dressed(armature, figure, name, collection)
+
+
+def refit(armature: bpy.types.Object, figure: Figure) -> Rig:
+    """Give the armature of a figure that was built here other measures, or another kind; settings and keys stay.
+
+    Its own meshes are replaced; what else hangs on it stays.
+    """
+    for child in [child for child in armature.children if child.get(PART_PROPERTY)]:
+        mesh = child.data
+        bpy.data.objects.remove(child)
+        if mesh.users == 0:
+            bpy.data.meshes.remove(mesh)
+    made, before = _armature_object(figure, armature.name), armature.data
+    armature.data = made.data
+    bpy.data.objects.remove(made)
+    if before.users == 0:
+        bpy.data.armatures.remove(before)
+    for pose_bone in armature.pose.bones:
+        _dress_bone(pose_bone, figure)
+    collections = armature.users_collection or (bpy.context.scene.collection,)
+    return _dressed(armature, figure, armature.name, collections[0])
+
+
+def _dressed(armature: bpy.types.Object, figure: Figure, name: str, collection: bpy.types.Collection) -> Rig:
+    """Make the meshes of `figure` around `armature`."""
     body = part_object(f"{name} body", body_part(figure), collection)
     equipment = {key: part_object(f"{name} {key}", equipment_part(figure, key), collection) for key in figure.gear}
-    for obj in (body, *equipment.values()):
+    for key, obj in (("body", body), *equipment.items()):
         skin_to(obj, armature)
+        obj[PART_PROPERTY] = key
     return Rig(armature, body, equipment)
 
 
@@ -133,17 +162,24 @@ def _dress_bones(armature: bpy.types.Object, figure: Figure) -> None:
     groups = {name: data.collections.new(name) for name in ("Root", "Body", "Equipment")}
     for pose_bone in armature.pose.bones:
         name = pose_bone.name
-        pose_bone.rotation_mode = "QUATERNION"
         group = "Root" if name == ROOT else "Equipment" if name in figure.gear else "Body"
         groups[group].assign(pose_bone.bone)
-        side = name[-2:]
-        pose_bone.bone.color.palette = {".L": "THEME01", ".R": "THEME04"}.get(side, "THEME09")
-        shape, scale = bone_shape(name, pose_bone.bone.length, figure.h, figure.sizes)
-        pose_bone.custom_shape = shape
-        pose_bone.use_custom_shape_bone_size = False
-        pose_bone.custom_shape_scale_xyz = scale
-        if name not in figure.gear and name not in (ROOT, "foot.L", "foot.R"):
-            pose_bone.custom_shape_translation = (0.0, 0.5 * pose_bone.bone.length, 0.0)
+        pose_bone.bone.color.palette = {".L": "THEME01", ".R": "THEME04"}.get(name[-2:], "THEME09")
+        _dress_bone(pose_bone, figure)
+
+
+def _dress_bone(pose_bone: bpy.types.PoseBone, figure: Figure) -> None:
+    """Give a bone what belongs to the object, not to the armature's data: how it turns, and its shape."""
+    name = pose_bone.name
+    pose_bone.rotation_mode = "QUATERNION"
+    shape, scale = bone_shape(name, pose_bone.bone.length, figure.h, figure.sizes)
+    pose_bone.custom_shape = shape
+    pose_bone.use_custom_shape_bone_size = False
+    pose_bone.custom_shape_scale_xyz = scale
+    if name not in figure.gear and name not in (ROOT, "foot.L", "foot.R"):
+        pose_bone.custom_shape_translation = (0.0, 0.5 * pose_bone.bone.length, 0.0)
+    else:
+        pose_bone.custom_shape_translation = (0.0, 0.0, 0.0)
 
 
 def pose_matrix(armature: bpy.types.Object, bone: str) -> Matrix:

@@ -56,4 +56,5 @@ def ending(recording: Recording) -> str:
 
 def bake_lines(result: BakeResult) -> list[str]:
     """Return what a bake made."""
-    return [f"Baked frames {result.frame_first:g} to {result.frame_last:g}", f"on {result.armature.name}"]
+    lines = [f"Baked frames {result.frame_first:g} to {result.frame_last:g}", f"on {result.armature.name}"]
+    return [*lines, f"Note: {result.note}"] if result.note else lines

@@ -1,7 +1,8 @@
 """Tests inside Blender's Python module: the extension as a user has it, in a user folder of its own.
 
 The working tree is linked into the user's extensions and enabled; with SKI_ADDON_ZIP set to a built zip, that zip is
-installed instead. Fixtures: `extension` (its package name), `core` (imports a module of it), `scene` (an empty scene).
+installed instead. Fixtures: `extension` (its package name), `core` (imports a module of it), `scene` (an empty scene),
+`ski` (the settings of a skier in it).
 """
 
 from __future__ import annotations
@@ -76,6 +77,12 @@ def scene(extension: str) -> Iterator[Any]:
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     yield bpy.context.scene
+
+
+@pytest.fixture
+def ski(core: Callable[[str], ModuleType], scene: Any) -> Any:
+    """The settings of a new skier, the only one in the scene."""
+    return core("blender.skiers").add_skier(scene).ski
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:

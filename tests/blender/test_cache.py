@@ -27,7 +27,7 @@ def cache(core, scene):
 
 
 def test_an_unsaved_file_uses_the_user_s_folder(cache, scene) -> None:
-    path = Path(cache.save_recording(Kept(), scene))
+    path = Path(cache.save_recording(Kept(), scene.name))
     assert path.parent == cache.user_cache()
     assert path.read_bytes() == b"recorded"
     assert "0123456789abcdef" in path.name
@@ -39,7 +39,7 @@ def test_a_saved_file_keeps_it_beside_itself_by_a_relative_path(cache, scene, tm
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot 7.blend"))
     scene = bpy.context.scene
     scene.name = "Take/1"
-    path = cache.save_recording(Kept(), scene)
+    path = cache.save_recording(Kept(), scene.name)
     assert path == "//ski_cache/shot_7_Take_1.npz"
     assert Path(bpy.path.abspath(path)).read_bytes() == b"recorded"
 
@@ -49,7 +49,7 @@ def test_a_folder_that_takes_no_files_falls_back_to_the_user_s(cache, scene, tmp
 
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     (tmp_path / cache.FOLDER).write_text("in the way")
-    assert Path(cache.save_recording(Kept(), bpy.context.scene)).parent == cache.user_cache()
+    assert Path(cache.save_recording(Kept(), "Scene")).parent == cache.user_cache()
 
 
 def test_only_the_newest_are_kept(cache, scene) -> None:
@@ -58,7 +58,7 @@ def test_only_the_newest_are_kept(cache, scene) -> None:
         path = folder / f"old_{index:02d}.npz"
         path.write_bytes(b"old")
         os.utime(path, (1_000_000 + index, 1_000_000 + index))
-    cache.save_recording(Kept(), scene)
+    cache.save_recording(Kept(), scene.name)
     left = sorted(path.name for path in folder.glob("*.npz"))
     assert len(left) == cache.KEPT
     assert "old_14.npz" in left
@@ -78,6 +78,6 @@ def test_a_recording_comes_back_as_it_was(core, cache, scene) -> None:
     )
     jobs = core("blender.jobs")
     recording = jobs.run_to_end(jobs.simulation_job(run))
-    found = cache.load_recording(cache.save_recording(recording, scene))
+    found = cache.load_recording(cache.save_recording(recording, "Skier"))
     np.testing.assert_array_equal(found.qpos, recording.qpos)
     assert found.header == recording.header

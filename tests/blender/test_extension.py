@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-OPERATORS = ("plan", "simulate", "bake")
+OPERATORS = ("add_skier", "place_gates", "plan", "simulate", "bake", "show_report")
 
 
 @pytest.mark.parametrize("name", OPERATORS)
@@ -17,8 +17,11 @@ def test_operator_is_registered(extension: str, name: str) -> None:
     assert hasattr(bpy.types, f"SKI_OT_{name}"), f"bpy.ops.ski.{name} is missing"
 
 
-def test_scene_has_the_settings(scene) -> None:
-    assert hasattr(scene, "ski")
+def test_settings_are_on_objects(scene) -> None:
+    import bpy
+
+    assert hasattr(bpy.types.Object, "ski")
+    assert hasattr(scene, "ski_skier")
 
 
 def test_disabling_takes_everything_out_and_enabling_brings_it_back(extension: str) -> None:
@@ -31,7 +34,8 @@ def test_disabling_takes_everything_out_and_enabling_brings_it_back(extension: s
     try:
         left = {name for name in dir(bpy.types) if name.startswith("SKI_")}
         assert not left
-        assert not hasattr(bpy.types.Scene, "ski")
+        assert not hasattr(bpy.types.Object, "ski")
+        assert not hasattr(bpy.types.Scene, "ski_skier")
     finally:
         addon_utils.enable(extension, default_set=True)
     assert {name for name in dir(bpy.types) if name.startswith("SKI_")} == before

@@ -14,8 +14,8 @@ from tests.blender.blender_tools import Context, Event
 class Operator:
     """Stands for the running operator: Blender makes those itself."""
 
-    def __init__(self, kind: type, spec: Any, runner: Any) -> None:
-        self._spec, self._runner = spec, runner
+    def __init__(self, kind: type, skier: str, spec: Any, runner: Any) -> None:
+        self._skier, self._spec, self._runner = skier, spec, runner
         self.reports: list[tuple[set, str]] = []
         self._kind = kind
 
@@ -33,14 +33,14 @@ def spec(core, scene):
 
 
 @pytest.fixture
-def start(core, extension, scene):
+def start(core, extension, scene, ski):
     """Starts an operator on a run and returns (operator, context)."""
     kind = import_module(f"{extension}.operators.simulate").SKI_OT_simulate
     jobs = core("blender.jobs")
 
     def started(spec):
         context = Context(scene)
-        return Operator(kind, spec, jobs.JobRunner(jobs.simulation_job(spec), context)), context
+        return Operator(kind, ski.id_data.name, spec, jobs.JobRunner(jobs.simulation_job(spec), context)), context
 
     yield started
     jobs.RUNNING.text = ""
@@ -54,11 +54,11 @@ def run_to_end(operator, context) -> set:
     raise AssertionError("the operator never ended")
 
 
-def test_the_timer_drives_it_to_the_end(core, scene, spec, start) -> None:
+def test_the_timer_drives_it_to_the_end(core, ski, spec, start) -> None:
     operator, context = start(spec)
     assert run_to_end(operator, context) == {"FINISHED"}
-    assert scene.ski.simulation_text.startswith("Skied to the end")
-    assert core("blender.cache").load_recording(scene.ski.recording).status == "finished"
+    assert ski.simulation_text.startswith("Skied to the end")
+    assert core("blender.cache").load_recording(ski.recording).status == "finished"
     assert operator.reports[-1][0] == {"INFO"}
     assert context.window_manager.open == []
     assert core("blender.jobs").RUNNING.text == ""
@@ -72,32 +72,32 @@ def test_other_events_pass_through(spec, start) -> None:
     operator.cancel(context)
 
 
-def test_escape_keeps_what_is_done(core, scene, spec, start, monkeypatch) -> None:
+def test_escape_keeps_what_is_done(core, ski, spec, start, monkeypatch) -> None:
     monkeypatch.setattr(core("blender.jobs"), "SLICE_SECONDS", 0.001)
     operator, context = start(spec)
     for _ in range(3):
         assert operator.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
     assert operator.modal(context, Event("ESC", "PRESS")) == {"FINISHED"}
-    assert scene.ski.simulation_failed
-    assert scene.ski.simulation_text.startswith("Stopped after")
-    assert core("blender.cache").load_recording(scene.ski.recording).status == "cancelled"
+    assert ski.simulation_failed
+    assert ski.simulation_text.startswith("Stopped after")
+    assert core("blender.cache").load_recording(ski.recording).status == "cancelled"
     assert operator.reports[-1][0] == {"WARNING"}
     assert context.window_manager.open == []
 
 
-def test_escape_before_the_first_step_keeps_nothing(scene, spec, start) -> None:
+def test_escape_before_the_first_step_keeps_nothing(ski, spec, start) -> None:
     operator, context = start(spec)
     assert operator.modal(context, Event("ESC", "PRESS")) == {"CANCELLED"}
-    assert scene.ski.recording == ""
+    assert ski.recording == ""
     assert "before the first step" in operator.reports[-1][1]
     assert context.window_manager.open == []
 
 
-def test_an_infeasible_run_is_said_and_cleaned_up(core, scene, spec, start) -> None:
+def test_an_infeasible_run_is_said_and_cleaned_up(core, ski, spec, start) -> None:
     operator, context = start(spec.with_overrides({"course.turn_radius": 4, "course.start_speed": 15}))
     assert run_to_end(operator, context) == {"CANCELLED"}
     assert operator.reports[-1][0] == {"ERROR"}
-    assert "cannot be skied at turn 1" in scene.ski.simulation_text
+    assert "cannot be skied at turn 1" in ski.simulation_text
     assert context.window_manager.open == []
     assert core("blender.jobs").RUNNING.text == ""
 
@@ -128,6 +128,16 @@ def test_a_second_one_cannot_be_started(core, extension, spec, start) -> None:
     assert not bpy.ops.ski.bake.poll()
     operator.cancel(context)
     assert bpy.ops.ski.simulate.poll()
+
+
+def test_a_skier_that_was_removed_meanwhile_is_named(ski, spec, start) -> None:
+    import bpy
+
+    operator, context = start(spec)
+    bpy.data.objects.remove(ski.id_data)
+    assert run_to_end(operator, context) == {"CANCELLED"}
+    assert "was removed or renamed meanwhile" in operator.reports[-1][1]
+    assert context.window_manager.open == []
 
 
 def test_progress_is_shown_in_the_status_bar_too(spec, start, monkeypatch, core) -> None:

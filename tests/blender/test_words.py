@@ -73,5 +73,5 @@ def test_a_plan(words) -> None:
 
 
 def test_a_bake(words) -> None:
-    result = SimpleNamespace(frame_first=1.0, frame_last=325.5, armature=SimpleNamespace(name="Skier"))
+    result = SimpleNamespace(frame_first=1.0, frame_last=325.5, armature=SimpleNamespace(name="Skier"), note="")
     assert words.bake_lines(result) == ["Baked frames 1 to 325.5", "on Skier"]

@@ -6,7 +6,9 @@ asks for a screenshot by a file FOLDER/NAME.shot and goes on when that file is g
 
 from __future__ import annotations
 
+import importlib
 import json
+import math
 import os
 import sys
 import time
@@ -74,80 +76,261 @@ def command_under_mouse() -> str:
     return manager.clipboard
 
 
-def click(operator: str) -> Steps:
-    """Find the sidebar's button of an operator by moving the mouse down the sidebar, and click it."""
+def wheel(kind: str, times: int) -> Steps:
+    """Turn the wheel over the sidebar."""
+    _, region = sidebar()
+    x, y = region.x + region.width // 2, region.y + region.height // 2
+    move_to(x, y)
+    yield 0.1
+    for _ in range(times):
+        window().event_simulate(type=kind, value="PRESS", x=x, y=y)
+        yield 0.03
+    yield 0.3
+
+
+def press(x: int, y: int, kind: str = "LEFTMOUSE") -> Steps:
+    """Press and release a mouse button."""
+    move_to(x, y)
+    yield 0.2
+    window().event_simulate(type=kind, value="PRESS", x=x, y=y)
+    yield 0.2
+    window().event_simulate(type=kind, value="RELEASE", x=x, y=y)
+    yield 0.3
+
+
+def key(kind: str, x: int, y: int, *, ctrl: bool = False) -> Steps:
+    """Press and release a key over a place."""
+    window().event_simulate(type=kind, value="PRESS", x=x, y=y, ctrl=ctrl)
+    yield 0.2
+    window().event_simulate(type=kind, value="RELEASE", x=x, y=y, ctrl=ctrl)
+    yield 0.4
+
+
+def click(command: str) -> Steps:
+    """Find the sidebar's button of an operator (with some of its arguments) by moving the mouse, and click it.
+
+    What is not in sight is scrolled to.
+    """
     _, region = sidebar()
     x = region.x + region.width // 2
-    for y in range(region.y + region.height - 10, region.y, -9):
-        move_to(x, y)
-        yield 0.06
-        if command_under_mouse().startswith(f"bpy.ops.{operator}("):
-            window().event_simulate(type="LEFTMOUSE", value="PRESS", x=x, y=y)
-            yield 0.2
-            window().event_simulate(type="LEFTMOUSE", value="RELEASE", x=x, y=y)
-            yield 0.3
-            return
-    raise LookupError(f"no button in the Ski tab calls {operator}")
+    yield from wheel("WHEELUPMOUSE", 40)
+    for _ in range(4):
+        for y in range(region.y + region.height - 10, region.y, -9):
+            move_to(x, y)
+            yield 0.06
+            found = command_under_mouse()
+            operator, _, arguments = command.partition("(")
+            if found.startswith(f"bpy.ops.{operator}(") and arguments in found:
+                yield from press(x, y)
+                return
+        yield from wheel("WHEELDOWNMOUSE", 12)
+    raise LookupError(f"no button in the Ski tab calls {command}")
+
+
+def main_region() -> bpy.types.Region:
+    """The 3D view itself."""
+    area, _ = sidebar()
+    return next(region for region in area.regions if region.type == "WINDOW")
+
+
+def middle() -> tuple[int, int]:
+    """A place in the 3D view away from the sidebar."""
+    region = main_region()
+    return region.x + region.width // 3, region.y + region.height // 2
+
+
+def on_screen(place: Any) -> tuple[int, int]:
+    """Where a place of the world is in the window."""
+    from bpy_extras.view3d_utils import location_3d_to_region_2d
+    from mathutils import Vector
+
+    area, _ = sidebar()
+    region = main_region()
+    spot = location_3d_to_region_2d(region, area.spaces.active.region_3d, Vector(place))
+    return int(region.x + spot.x), int(region.y + spot.y)
+
+
+def modal(name: str) -> bool:
+    """Whether an operator is running in the window."""
+    return any(operator.bl_idname == name for operator in window().modal_operators)
 
 
 def running() -> bool:
     """Whether the simulation is running in the window."""
-    return any(operator.bl_idname == "SKI_OT_simulate" for operator in window().modal_operators)
+    return modal("SKI_OT_simulate")
+
+
+def skier() -> bpy.types.Object:
+    """The skier in the tab, looked up anew: undo makes other objects of it."""
+    return bpy.context.scene.ski_skier
+
+
+def library(name: str) -> Any:
+    """A module of the installed extension."""
+    return importlib.import_module(f"bl_ext.user_default.ski_addon.ski_addon.{name}")
+
+
+def look_from(place: tuple[float, float, float], distance: float, pitch: float, turn: float) -> Steps:
+    """Look at a place of the world from a distance [m], down by an angle and round the vertical [degrees]."""
+    from mathutils import Euler, Vector
+
+    area, _ = sidebar()
+    view = area.spaces.active.region_3d
+    view.view_perspective = "PERSP"
+    view.view_rotation = Euler((math.radians(90.0 - pitch), 0.0, math.radians(turn))).to_quaternion()
+    view.view_location, view.view_distance = Vector(place), distance
+    yield 0.8
 
 
 def main_job() -> Steps:
-    """What a user does first: open the tab, plan, simulate, stop that, simulate again, bake, play."""
+    """What a user does: from factory settings to a playing run; gates by mouse; Esc; undo; a course that cannot be."""
     yield 2.0
     area, region = sidebar()
     area.spaces.active.show_region_ui = True
+    area.spaces.active.clip_end = 1000.0
+    for obj in list(bpy.data.objects):  # the cube would stand in the way
+        bpy.data.objects.remove(obj)
     yield 1.5
     region.active_panel_category = "Ski"
     area.tag_redraw()
     yield from screenshot("1_tab")
+    yield from from_nothing_to_playing()
+    yield from stopping_and_undoing()
+    yield from gates_by_mouse()
+    yield from impossible()
 
-    settings = bpy.context.scene.ski
-    settings.preset = "giant_slalom"
-    settings.course.turn_count = 2
-    yield from click("ski.plan")
-    yield from until(lambda: bool(settings.plan_text), "the plan")
-    note("plan", plan=settings.plan_text, plan_failed=settings.plan_failed)
-    yield from screenshot("2_planned")
 
+def from_nothing_to_playing() -> Steps:
+    """Add Skier, Simulate, Bake, Play: four clicks."""
+    begin = time.monotonic()
+    yield from click("ski.add_skier")
+    yield from until(lambda: skier() is not None, "the skier")
+    yield from until(lambda: library("blender.live").STATE.preview is not None, "the preview", 20)
+    yield from look_from((30.0, 0.0, -5.0), 75.0, 28.0, -90.0)
+    yield from screenshot("2_skier")
+    bpy.ops.wm.call_menu(name="SKI_MT_runs_presets")
+    yield from screenshot("3_presets")
+    yield from key("ESC", *middle())
+    skier().ski.course.turn_count = 6
     yield from click("ski.simulate")
     yield from until(running, "the simulation's start", 20)
-    yield from screenshot("3_simulating")
-    if running():  # a fast machine may have finished
-        _, region = sidebar()
-        window().event_simulate(type="ESC", value="PRESS", x=region.x - 200, y=region.y + 200)
-    yield from until(lambda: not running(), "Esc", 20)
-    note("stop", stopped=settings.simulation_text)
-    yield from screenshot("4_stopped")
-
-    yield from click("ski.simulate")
-    yield from until(running, "the simulation's second start", 20)
-    yield from until(lambda: not running(), "the simulation's end", 180)
-    note("simulate", simulated=settings.simulation_text, simulation_failed=settings.simulation_failed)
-    yield from click("ski.bake")
-    yield from until(lambda: settings.armature is not None, "the bake")
+    yield 1.5
+    yield from screenshot("4_simulating")
+    started = time.monotonic()
+    yield from until(lambda: not running(), "the simulation's end", 240)
+    note(
+        "simulate",
+        simulation_seconds=time.monotonic() - started + 2.5,
+        simulated=skier().ski.simulation_text,
+        simulation_failed=skier().ski.simulation_failed,
+    )
+    yield from click("ski.bake(")
+    yield from until(lambda: bool(skier().ski.bake_text), "the bake", 30)
     scene = bpy.context.scene
     note(
         "bake",
-        action=settings.armature.animation_data.action.name,
+        action=skier().animation_data.action.name,
         frames=[scene.frame_start, scene.frame_end],
-        bones=len(settings.armature.pose.bones),
+        bones=len(skier().pose.bones),
     )
+    with bpy.context.temp_override(window=window(), area=area_of_view()):
+        bpy.ops.screen.animation_play()
+    yield 3.0
+    played = scene.frame_current
+    with bpy.context.temp_override(window=window(), area=area_of_view()):
+        bpy.ops.screen.animation_cancel(restore_frame=False)
+    note("play", frame_reached=played, seconds=time.monotonic() - begin)
     scene.frame_set((scene.frame_start + scene.frame_end) // 2)
-    yield from show_skier(settings.armature)
+    place = skier().matrix_world @ skier().pose.bones["pelvis"].head
+    yield from look_from(tuple(place), 6.0, 12.0, -60.0)
     yield from screenshot("5_baked")
 
 
-def show_skier(armature: bpy.types.Object) -> Steps:
-    """Look at the skier from near."""
-    area, _ = sidebar()
-    view = area.spaces.active.region_3d
-    view.view_location = armature.matrix_world @ armature.pose.bones["pelvis"].head
-    view.view_distance = 5.0
+def area_of_view() -> bpy.types.Area:
+    """The 3D view's area."""
+    return sidebar()[0]
+
+
+def stopping_and_undoing() -> Steps:
+    """Esc in the middle of a simulation; Ctrl-Z takes the bake away, then the skier."""
+    before = skier().ski.simulation_text
+    yield from click("ski.simulate")
+    yield from until(running, "the simulation's second start", 20)
+    yield 2.0
+    asked = time.monotonic()
+    window().event_simulate(type="ESC", value="PRESS", x=middle()[0], y=middle()[1])
+    yield from until(lambda: not running(), "Esc", 20)
+    note("stop", stopped=skier().ski.simulation_text, finished=before, esc_seconds=time.monotonic() - asked)
+    yield from screenshot("6_stopped")
+    move_to(*middle())
+    yield 0.3
+    for _ in range(12):
+        if not [obj for obj in bpy.data.objects if obj.name == "Slope"]:
+            break
+        yield from key("Z", *middle(), ctrl=True)
+    note("undo_bake", skier_left=skier() is not None, slope_left="Slope" in bpy.data.objects)
+    yield from screenshot("7_undone")
+
+
+def gates_by_mouse() -> Steps:
+    """Five gates by clicks on the slope, one of them dragged with the preview following, and one undone."""
+    live = library("blender.live")
+    if skier() is None:
+        bpy.ops.ski.add_skier()
+    settings = skier().ski
+    settings.course.kind, settings.course.start_speed = "gates", 7.0
+    settings.course.target_speed_word, settings.course.target_speed = False, 9.0
+    bpy.ops.ski.make_slope()
     yield 1.0
+    yield from look_from((38.0, 0.0, -7.0), 55.0, 40.0, -90.0)
+    yield from click("ski.place_gates")
+    yield from until(lambda: modal("SKI_OT_place_gates"), "Place Gates", 10)
+    for index in range(5):
+        x, y = 20.0 + 9.0 * index, 1.8 if index % 2 == 0 else -1.8
+        yield from press(*on_screen((x, y, -x * math.tan(settings.slope.angle_deg))))
+    yield from screenshot("8_placing")
+    yield from key("RET", *middle())
+    yield from until(lambda: not modal("SKI_OT_place_gates"), "Enter", 10)
+    spec = library("blender.properties").read_spec(skier().ski)
+    note("gates", gates=[[gate.x, gate.y] for gate in spec.gate])
+    yield 1.0
+    before = live.STATE.preview
+    gate = library("blender.course_objects").standing_gates(skier().ski, spec)[2]
+    for obj in bpy.context.selected_objects:
+        obj.select_set(False)
+    gate.select_set(True)
+    bpy.context.view_layer.objects.active = gate
+    x, y = on_screen(gate.matrix_world.translation)
+    move_to(x, y)
+    yield 0.3
+    yield from key("G", x, y)
+    shown = []
+    for step in range(1, 7):
+        move_to(x - 9 * step, y)
+        yield 0.25
+        shown.append(live.STATE.preview)
+    yield from screenshot("9_dragging")
+    note("drag", previews=len({id(one) for one in shown if one is not before}), moving=modal("TRANSFORM_OT_translate"))
+    yield from press(x - 54, y)
+    yield from screenshot("10_dragged")
+    count = len(library("blender.properties").read_spec(skier().ski).gate)
+    for _ in range(3):
+        yield from key("Z", *middle(), ctrl=True)
+    left = len(library("blender.properties").read_spec(skier().ski).gate)
+    note("undo_gates", gates_before=count, gates_left=left)
+    yield from screenshot("11_gate_undone")
+
+
+def impossible() -> Steps:
+    """A course that nobody can ski is named in the tab."""
+    bpy.ops.ski.apply_preset(kind="runs", preset="giant_slalom")
+    skier().ski.course.turn_radius, skier().ski.course.start_speed = 5.0, 20.0
+    yield 1.0
+    yield from click("ski.plan")
+    yield from until(lambda: bool(skier().ski.plan_text), "the plan", 20)
+    note("impossible", refused=skier().ski.plan_text, refused_failed=skier().ski.plan_failed)
+    yield from look_from((30.0, 0.0, -5.0), 75.0, 28.0, -90.0)
+    yield from screenshot("12_impossible")
 
 
 _job = main_job()
