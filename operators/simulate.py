@@ -8,7 +8,8 @@ from typing import Any
 
 import bpy
 
-from ..ski_addon.blender.cache import save_recording
+from ..ski_addon.blender.cache import load_recording, save_recording
+from ..ski_addon.blender.frame_rate import scene_rate
 from ..ski_addon.blender.jobs import RUNNING, JobRunner, run_to_end, simulation_job
 from ..ski_addon.blender.properties import is_skier, read_spec, tell
 from ..ski_addon.blender.shown import required_skier
@@ -25,7 +26,19 @@ class SKI_OT_simulate(bpy.types.Operator):
     bl_label = "Simulate"
     bl_options = {"REGISTER"}
 
+    begin: bpy.props.EnumProperty(
+        name="Begin",
+        description="Where the simulation begins",
+        items=[
+            ("START", "At the Start", "The whole run"),
+            ("END", "Go On", "Go on where the last simulation ended, on a course that may have become longer"),
+            ("FRAME", "From This Frame", "Keep the run up to the current frame and simulate anew from there"),
+        ],
+        default="START",
+        options={"SKIP_SAVE"},
+    )
     _spec: RunSpec
+    _after: tuple[Any, float] | None = None
     _skier: str
     _runner: JobRunner | None = None
 
@@ -34,12 +47,21 @@ class SKI_OT_simulate(bpy.types.Operator):
         """One simulation at a time."""
         return not RUNNING.text
 
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: Any) -> str:
+        """Return what the button does."""
+        if properties.begin == "END":
+            return "Go on where the last simulation ended; the course may have become longer meanwhile"
+        if properties.begin == "FRAME":
+            return "Keep the simulated run up to the current frame, and simulate anew from there"
+        return cls.__doc__ or ""
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Simulate to the end at once: for scripts and Blender without a window."""
         try:
             self._begin(context)
             with reported(self), _kept(self._settings(), self._spec):
-                recording = run_to_end(simulation_job(self._spec))
+                recording = run_to_end(simulation_job(self._spec, self._after))
             return self._keep(context, recording)
         except Failed:
             return {"CANCELLED"}
@@ -52,7 +74,7 @@ class SKI_OT_simulate(bpy.types.Operator):
             self._begin(context)
         except Failed:
             return {"CANCELLED"}
-        self._runner = JobRunner(simulation_job(self._spec), context)
+        self._runner = JobRunner(simulation_job(self._spec, self._after), context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -87,9 +109,21 @@ class SKI_OT_simulate(bpy.types.Operator):
             skier = required_skier(context)
             self._skier = skier.name
             self._spec = read_spec(skier.ski)
+            self._after = self._recorded(context, skier.ski)
             expected = estimate(self._spec)
             if expected.too_large:
                 raise SpecError("course", problem=f"would take {expected.described}", hint="shorten the course")
+
+    def _recorded(self, context: bpy.types.Context, settings: Any) -> tuple[Any, float] | None:
+        """Return the recording to go on from and the moment [s], or None for a run from the start."""
+        if self.begin == "START":
+            return None
+        recording = load_recording(settings.recording)
+        end = float(recording.time[-1]) if len(recording.time) else 0.0
+        if self.begin == "END":
+            return recording, end
+        frame = context.scene.frame_current_final - settings.bake.frame_start
+        return recording, frame / scene_rate(context.scene)
 
     def _settings(self) -> Any:
         """Return the skier's settings: looked up by name, for undo may have made all objects anew meanwhile."""

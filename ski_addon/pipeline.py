@@ -8,7 +8,7 @@ from .body import SkierModel, build_skier_model
 from .course import Track, build_track
 from .errors import SpecError
 from .planning import MotionPlan, as_planned, plan_motion
-from .simulation import Progress, Recording, Simulation, check_pushes, simulate
+from .simulation import Progress, Recording, Simulation, check_pushes, resume, simulate
 from .spec import RunSpec
 from .terrain import Terrain, build_terrain
 
@@ -47,6 +47,13 @@ def make_plan(spec: RunSpec) -> Planned:
 def start_simulation(planned: Planned) -> Simulation:
     """Return the simulation of a plan at its first step, to be advanced by the caller."""
     return Simulation(planned.spec, planned.plan, planned.model, planned.terrain)
+
+
+def resume_simulation(planned: Planned, recording: Recording, time: float) -> Simulation:
+    """Return the simulation of a plan that goes on from `recording` at `time` [s]; raises `SpecError`."""
+    simulation = start_simulation(planned)
+    resume(simulation, recording, time)
+    return simulation
 
 
 def run_simulation(planned: Planned, progress: Progress | None = None) -> tuple[Recording, list[float]]:

@@ -38,17 +38,18 @@ class Running:
 RUNNING = Running()
 
 
-def simulation_job(spec: RunSpec) -> Job:
+def simulation_job(spec: RunSpec, after: tuple[Recording, float] | None = None) -> Job:
     """Plan and simulate `spec` step by step; a stopped job returns the recording up to there.
 
-    Raises `PlanInfeasible` or `SpecError` on the first step.
+    With `after` it goes on from that recording at that time [s]. Raises `PlanInfeasible` or `SpecError` on the first
+    step.
     """
     stop = yield 0.0, "Planning"  # before anything that may fail or take long
 
-    from ..pipeline import make_plan, start_simulation
+    from ..pipeline import make_plan, resume_simulation, start_simulation
 
     planned = make_plan(spec)
-    simulation = start_simulation(planned)
+    simulation = start_simulation(planned) if after is None else resume_simulation(planned, *after)
     while not stop and simulation.advance(STEPS):
         done = simulation.step_done * simulation.time_step
         stop = yield simulation.fraction, f"{done:.1f} of {planned.plan.duration:.1f} s skied"

@@ -217,6 +217,12 @@ class SKI_PT_simulate(bpy.types.Panel):
         _draw_stage(layout, "ski.plan", "CURVE_PATH", not missing_dependencies())
         draw_result(layout, settings, "plan", asked, columns)
         _draw_stage(layout, "ski.simulate", "PHYSICS", not missing_dependencies())
+        if settings.recording and not RUNNING.text:
+            row = layout.row(align=True)
+            row.enabled = not missing_dependencies()
+            row.operator("ski.simulate", text="Go On").begin = "END"
+            frame = f"From Frame {context.scene.frame_current}"
+            row.operator("ski.simulate", text=frame).begin = "FRAME"
         if RUNNING.text:
             draw_progress(layout, columns)
         else:

@@ -5,6 +5,7 @@ from .diagnostics import summarise
 from .falls import Fall
 from .pushes import check_pushes
 from .recording import Recording
+from .resuming import resume
 from .simulation import Progress, Simulation, simulate
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "check_pushes",
     "gate_summary",
     "recorded_gates",
+    "resume",
     "simulate",
     "summarise",
 ]

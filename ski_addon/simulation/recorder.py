@@ -32,6 +32,18 @@ class Recorder:
         self._counts[self.count] = counts
         self.count += 1
 
+    def refill(self, recording: Recording, count: int) -> None:
+        """Begin with the first `count` steps of `recording`."""
+        missing = count - len(self._reals)
+        if missing > 0:
+            self._reals = np.empty((2 * count, self._reals.shape[1]))
+            self._counts = np.empty((2 * count, len(COUNTS)), dtype=np.int32)
+        for name, place in zip(SHAPES, self._slices, strict=True):
+            self._reals[:count, place] = getattr(recording, name)[:count].reshape(count, -1)
+        for column, name in enumerate(COUNTS):
+            self._counts[:count, column] = getattr(recording, name)[:count]
+        self.count = count
+
     def column(self, name: str) -> np.ndarray:
         """Return what has been recorded under `name`, (count, ...)."""
         if name in COUNTS:

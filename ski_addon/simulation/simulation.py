@@ -128,6 +128,15 @@ class Simulation:
             status = "finished" if self.finished else self.fall.status if self.fall else "cancelled"
         return self._recorder.recording(self._header(status))
 
+    def restore(self, recording: Recording, index: int, progress: float) -> None:
+        """Go on from the state at step `index` of `recording`, so far [s] into the plan; see `resuming.resume`."""
+        self._recorder.refill(recording, index)
+        self.step_done, self.progress = index, progress
+        self.finished = progress >= self.plan.duration
+        self.arc_length = float(recording.arc_length[index])
+        self.dynamics.qpos[:], self.dynamics.qvel[:] = recording.qpos[index], recording.qvel[index]
+        self.dynamics.update()
+
     def _start(self) -> None:
         """Set the planned pose and velocity at the start of the track."""
         dynamics, model, columns = self.dynamics, self.model, self.reference.columns

@@ -14,6 +14,8 @@ from tests.blender.blender_tools import Context, Event
 class Operator:
     """Stands for the running operator: Blender makes those itself."""
 
+    _after = None
+
     def __init__(self, kind: type, skier: str, spec: Any, runner: Any) -> None:
         self._skier, self._spec, self._runner = skier, spec, runner
         self.reports: list[tuple[set, str]] = []

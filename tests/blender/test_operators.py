@@ -72,6 +72,39 @@ def test_simulate_says_where_a_plan_is_infeasible(ski) -> None:
     assert ski.recording == ""
 
 
+def test_a_longer_course_goes_on_from_the_recording(core, ski, scene) -> None:
+    import bpy
+
+    bpy.ops.ski.simulate()
+    load = core("blender.cache").load_recording
+    before = load(ski.recording)
+    ski.course.turn_count = 2
+    scene.frame_set(1 + int(0.7 * before.duration * 24))
+    assert bpy.ops.ski.simulate(begin="FRAME") == {"FINISHED"}
+    after = load(ski.recording)
+    kept = int((scene.frame_current - 1) / 24 / 0.001)
+    np.testing.assert_array_equal(after.qpos[:kept], before.qpos[:kept])
+    assert after.duration > before.duration + 0.5 and after.status == "finished"
+
+
+def test_a_moment_after_the_recording_is_refused_and_the_recording_stays(ski, scene) -> None:
+    import bpy
+
+    bpy.ops.ski.simulate()
+    kept = Path(ski.recording).read_bytes()
+    scene.frame_set(900)
+    with pytest.raises(RuntimeError, match="resume time = .* is outside"):
+        bpy.ops.ski.simulate(begin="FRAME")
+    assert Path(ski.recording).read_bytes() == kept
+
+
+def test_going_on_needs_a_recording(ski) -> None:
+    import bpy
+
+    with pytest.raises(RuntimeError, match="press Simulate"):
+        bpy.ops.ski.simulate(begin="END")
+
+
 def test_a_huge_run_is_not_started(ski) -> None:
     import bpy
 
