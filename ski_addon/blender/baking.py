@@ -17,11 +17,13 @@ from .bone_tables import own_map
 from .cache import load_recording
 from .course_objects import gate_objects
 from .figures import bake_figure
+from .frame_rate import scene_rate
 from .ground import Place, renew_ground
 from .placing import world_from_run
 from .properties import read_spec
 from .ride import Ride, instant_ride, recorded_ride
 from .skiers import fit_figure
+from .spray import build_spray
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
@@ -42,6 +44,9 @@ def bake_simulation(scene: bpy.types.Scene, skier: bpy.types.Object) -> tuple[Ru
         fit_figure(skier, run)
         result = bake_recording(recording, scene, armature=skier, options=options, world_from_run=matrix, keys=keys)
     _lay_ground(scene, settings, recorded_ride(recording, build_skeleton(run.skier)), run)
+    if settings.spray:
+        emitter = build_spray(recording, run, settings.ground, scene_rate(scene), options.frame_start)
+        emitter.parent = settings.start
     return run, result
 
 
@@ -84,5 +89,5 @@ def bake_preview(scene: bpy.types.Scene, skier: bpy.types.Object) -> tuple[RunSp
 
 def _lay_ground(scene: bpy.types.Scene, settings: Any, ride: Ride, run: RunSpec) -> None:
     """Put slope, tracks and gates of the run under the skier."""
-    place = Place(settings.start, settings.slope_mesh is not None, gate_objects(settings, run))
+    place = Place(settings.start, settings.slope_mesh is not None, gate_objects(settings, run), settings.tracks)
     settings.ground = renew_ground(ride, run, scene, settings.ground, read_spec(settings).bake, place)

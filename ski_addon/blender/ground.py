@@ -17,7 +17,7 @@ from .gate_placing import GROUND_MARK
 from .gates import bake_gates, build_gates
 from .obstacles import build_obstacles
 from .ride import Ride, recorded_ride
-from .ski_tracks import build_traces
+from .ski_tracks import build_traces, build_track_curves
 from .slope import build_slope
 from .stage import swings_of
 
@@ -28,15 +28,20 @@ if TYPE_CHECKING:
 MARK = GROUND_MARK
 
 
+MESH = "mesh"
+
+
 @dataclass(frozen=True)
 class Place:
     """Where a run lies: `start`, the object that carries its frame (None: the world's), whether a mesh of the user is
-    the slope (`own_slope`), and the objects of each gate that stands there already (`gates`).
+    the slope (`own_slope`), the objects of each gate that stands there already (`gates`), and what the `tracks` are
+    laid as: "mesh", "curve" or "none".
     """
 
     start: bpy.types.Object | None = None
     own_slope: bool = False
     gates: list[list[bpy.types.Object]] = field(default_factory=list)
+    tracks: str = MESH
 
 
 def update_ground(
@@ -73,7 +78,9 @@ def renew_ground(
     place = place or Place()
     terrain, track = build_terrain(spec.slope), np.asarray(ride.timeline.track_position)
     made = [] if place.own_slope else [build_slope(terrain, track, collection, far=(), snow=ride.on_snow)]
-    made += build_traces(ride.traces, terrain, collection)
+    if place.tracks != "none":
+        lay = build_traces if place.tracks == MESH else build_track_curves
+        made += lay(ride.traces, terrain, collection)
     if spec.course.kind == "gates":
         gates = place.gates or build_gates(spec, terrain, _gates_within(collection))
         swings = swings_of(ride, spec, terrain)
@@ -83,7 +90,10 @@ def renew_ground(
             bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start, _turn(place.start))
         for obj in [] if place.gates else [obj for objects in gates for obj in objects]:
             obj[MARK] = True
-    made += build_obstacles(spec, terrain, collection, snow=ride.on_snow)
+    for obj in build_obstacles(spec, terrain, collection, snow=ride.on_snow):
+        obj[MARK] = True
+        if place.start is not None:
+            obj.matrix_world = place.start.matrix_world @ obj.matrix_basis
     for obj in made:
         obj[MARK] = True
         obj.parent = place.start

@@ -248,6 +248,9 @@ class SKI_PT_bake(bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(settings, "tolerance_deg")
         column.prop(settings, "tolerance_mm")
+        column = layout.column(align=True)
+        column.prop(settings, "tracks")
+        column.prop(settings, "spray")
         if settings.is_own:
             column = layout.column(align=True)
             for name in ("root_motion", "legs", "equipment"):

@@ -171,6 +171,15 @@ def _settings_group(groups: dict[str, type], lists: dict[str, type], bones: type
             name="and Millimetres", description="Leave out keys of places that deviate by less; 0 = keep all",
             default=0.0, min=0.0, max=100.0,
         ),
+        "tracks": bpy.props.EnumProperty(
+            name="Ski Tracks", description="What the skis leave in the snow",
+            items=[("mesh", "Mesh", "Grooves that can be seen"), ("curve", "Curves", "Curves as wide as the tracks"),
+                   ("none", "None", "No tracks")],
+        ),
+        "spray": bpy.props.BoolProperty(
+            name="Snow Spray",
+            description="An emitter at the outside ski with a keyed strength, to drive particles of your own with",
+        ),
         "root_motion": bpy.props.EnumProperty(
             name="Root Motion", description="What carries your character down the slope",
             items=[("pelvis", "Hips", "The hips' bone alone"), ("bone", "Root Bone", "The bone at the root"),

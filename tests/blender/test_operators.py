@@ -182,6 +182,39 @@ def test_baking_again_keeps_one_skier_and_one_slope(ski, scene) -> None:
     assert len(bpy.data.actions) == 1
 
 
+@pytest.mark.parametrize(("tracks", "kinds"), [("mesh", {"MESH"}), ("curve", {"CURVE"}), ("none", set())])
+def test_tracks_and_spray_are_as_asked(ski, scene, tracks, kinds) -> None:
+    import bpy
+
+    ski.tracks, ski.spray = tracks, True
+    bpy.ops.ski.simulate()
+    bpy.ops.ski.bake()
+    bpy.ops.ski.bake()
+    assert {obj.type for obj in scene.objects if obj.name.startswith("Ski track")} == kinds
+    (spray,) = [obj for obj in scene.objects if obj.name.startswith("Snow spray")]
+    assert spray.parent == ski.start and spray.animation_data.action is not None
+    assert "strength" in spray
+
+
+def test_fewer_keys_and_a_strip(ski) -> None:
+    import bpy
+
+    bpy.ops.ski.simulate()
+    bpy.ops.ski.bake()
+    action = ski.id_data.animation_data.action
+    before = sum(len(curve.keyframe_points) for curve in curves(action).values())
+    ski.tolerance_deg, ski.tolerance_mm, ski.as_strip = 0.5, 2.0, True
+    bpy.ops.ski.bake()
+    data = ski.id_data.animation_data
+    (strip,) = [strip for track in data.nla_tracks for strip in track.strips]
+    assert data.action is None and strip.action == action
+    after = sum(len(curve.keyframe_points) for curve in curves(action).values())
+    assert after < 0.6 * before
+    ski.as_strip = False
+    bpy.ops.ski.bake()
+    assert ski.id_data.animation_data.action == action and not len(ski.id_data.animation_data.nla_tracks)
+
+
 def test_another_person_refits_the_same_skier(core, ski, scene) -> None:
     import bpy
 
