@@ -90,3 +90,11 @@ def test_the_example_on_the_page_is_a_bone_map() -> None:
     assert bone_map.root == "root"
     assert {entry.bone: entry.share for entry in bone_map.entries}["spine1"] == 0.5
     assert bone_map.settings == (BoneSetting("leg.L", "IK_FK", 1.0),)
+
+
+@pytest.mark.parametrize("path", sorted(MAPS.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_shipped_map_is_written_and_read_again(path, tmp_path):
+    whole = BoneMap.load(path)
+    copy = tmp_path / "copy.toml"
+    copy.write_text(whole.to_toml(), encoding="utf-8")
+    assert BoneMap.load(copy) == whole

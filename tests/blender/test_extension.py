@@ -47,6 +47,46 @@ def test_an_empty_file_keeps_the_extension(scene, extension: str) -> None:
     assert extension in bpy.context.preferences.addons
 
 
+def test_a_baked_run_plays_without_the_extension(core, extension, scene, tmp_path) -> None:
+    """Saved, opened with the extension disabled: keys, meshes and settings are there, and nothing complains."""
+    import addon_utils
+    import bpy
+
+    bpy.ops.ski.add_skier(preset="beginner_turns")
+    bpy.context.object.ski.course.turn_radius = 21.0
+    bpy.ops.ski.bake(source="PREVIEW")
+    path = tmp_path / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    addon_utils.disable(extension, default_set=True)
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+        skier, places = bpy.data.objects["Skier"], []
+        for frame in (1, 60, 120):
+            bpy.context.scene.frame_set(frame)
+            places.append(tuple(skier.matrix_world @ skier.pose.bones["pelvis"].head))
+        assert places[0][0] < places[1][0] < places[2][0]
+        assert places[0][2] > places[2][2]
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    finally:
+        addon_utils.enable(extension, default_set=True)
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    assert bpy.data.objects["Skier"].ski.course.turn_radius == 21.0  # kept all the while
+
+
+def test_a_file_renamed_between_sessions_finds_its_recording(core, scene, tmp_path) -> None:
+    import bpy
+
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "one.blend"))
+    bpy.ops.ski.add_skier(preset="paper_main")
+    settings = bpy.context.object.ski
+    settings.course.turn_count, settings.course.turn_duration = 1, 0.4
+    bpy.ops.ski.simulate()
+    bpy.ops.wm.save_mainfile()
+    (tmp_path / "one.blend").rename(tmp_path / "other name.blend")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "other name.blend"))
+    assert bpy.ops.ski.bake() == {"FINISHED"}
+
+
 ENABLE_ALONE = """
 import os, sys
 import bpy, addon_utils
