@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CORE = ROOT / "ski_addon"
 BLENDER = {"bpy", "bmesh", "blf", "gpu", "mathutils", "bpy_extras", "addon_utils", "bl_ui"}
 COMMAND_LINE = {"ski_addon/cli.py", "ski_addon/results.py"}
-BLENDER_ROOMS = ("operators", "ski_addon/blender", "tests/blender", "tests/gui")
+BLENDER_ROOMS = ("operators", "ski_addon/blender", "tests/blender", "tests/gui", "benchmarks/blender.py")
 
 
 def python_files() -> list[str]:
