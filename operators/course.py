@@ -17,7 +17,6 @@ from ..ski_addon.blender.gate_placing import (
     ground_under_ray,
     refresh_gates,
     set_gates,
-    use_standing,
 )
 from ..ski_addon.blender.properties import read_slope, read_spec
 from ..ski_addon.blender.shown import required_skier, skier_of
@@ -96,8 +95,6 @@ class SKI_OT_place_gates(bpy.types.Operator):
         listed = spec.course.kind == "gates" and spec.course.gate_setting == "list"
         if listed and spec.gate and not standing_gates(settings, spec):
             set_gates(settings, spec)
-        elif not listed:
-            use_standing(settings)
 
     def _ground(self, context: bpy.types.Context, event: Any, area: Any, region: Any) -> Any:
         """Return the place on the ground under the mouse, or None."""

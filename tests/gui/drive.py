@@ -124,6 +124,7 @@ def click(command: str) -> Steps:
                 yield from press(x, y)
                 return
         yield from wheel("WHEELDOWNMOUSE", 12)
+    yield from screenshot("no_button")
     raise LookupError(f"no button in the Ski tab calls {command}")
 
 
@@ -208,10 +209,8 @@ def from_nothing_to_playing() -> Steps:
     yield from until(lambda: library("blender.live").STATE.preview is not None, "the preview", 20)
     yield from look_from((30.0, 0.0, -5.0), 75.0, 28.0, -90.0)
     yield from screenshot("2_skier")
-    bpy.ops.wm.call_menu(name="SKI_MT_runs_presets")
-    yield from screenshot("3_presets")
-    yield from key("ESC", *middle())
-    skier().ski.course.turn_count = 6
+    yield from choose_preset("SKI_MT_runs_presets", "M")
+    note("preset", preset=skier().ski.preset)
     yield from click("ski.simulate")
     yield from until(running, "the simulation's start", 20)
     yield 1.5
@@ -249,6 +248,18 @@ def from_nothing_to_playing() -> Steps:
 def area_of_view() -> bpy.types.Area:
     """The 3D view's area."""
     return sidebar()[0]
+
+
+def choose_preset(menu: str, letter: str) -> Steps:
+    """Open a menu of presets and press the letter that is underlined in an entry."""
+    x, y = middle()
+    move_to(x, y)
+    yield 0.3
+    before = skier().ski.preset
+    bpy.ops.wm.call_menu(name=menu)
+    yield from screenshot("3_presets")
+    yield from key(letter, x, y)
+    yield from until(lambda: skier().ski.preset != before, "the preset", 10)
 
 
 def stopping_and_undoing() -> Steps:

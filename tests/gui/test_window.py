@@ -65,8 +65,12 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_everything_was_done_by_mouse(outcome: dict[str, Any]) -> None:
     assert not outcome["error"], outcome["error"]
-    steps = ["simulate", "bake", "play", "stop", "undo_bake", "gates", "drag", "undo_gates", "impossible"]
+    steps = ["preset", "simulate", "bake", "play", "stop", "undo_bake", "gates", "drag", "undo_gates", "impossible"]
     assert outcome["steps"] == steps
+
+
+def test_a_preset_was_chosen_from_the_menu(outcome: dict[str, Any]) -> None:
+    assert outcome["preset"] == "medium_carving"
 
 
 def test_the_run_was_simulated_baked_and_played(outcome: dict[str, Any]) -> None:
