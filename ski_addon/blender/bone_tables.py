@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ..animation.bone_map import BoneMap
-from ..atomic import write_text
 from ..errors import OutputError, SpecError
+
+if TYPE_CHECKING:
+    from ..animation.bone_map import BoneMap
 
 
 def bone_group() -> type:
@@ -28,6 +29,7 @@ def bone_group() -> type:
 
 def fill_table(armature: bpy.types.Object, path: Path) -> list[str]:
     """Fill the table of `armature` by the bone map at `path`; returns the names in it that the armature has not."""
+    from ..animation.bone_map import BoneMap
     from .armature_checks import check_object
 
     check_object(armature)
@@ -44,6 +46,8 @@ def fill_table(armature: bpy.types.Object, path: Path) -> list[str]:
 
 def own_map(armature: bpy.types.Object) -> BoneMap | None:
     """Return the bone map that the table of `armature` makes, or None without one; raises `SpecError`."""
+    from ..animation.bone_map import BoneMap
+
     settings = armature.ski
     if not len(settings.bones):
         return None
@@ -59,6 +63,7 @@ def own_map(armature: bpy.types.Object) -> BoneMap | None:
 
 def save_map(armature: bpy.types.Object, name: str) -> Path:
     """Write the table of `armature` as a bone map of the user's own; raises `SpecError` or `OutputError`."""
+    from ..atomic import write_text
     from .armature_maps import user_map_folder
 
     made, stem = own_map(armature), re.sub(r"[^\w-]+", "_", name.strip()).strip("_").lower()
