@@ -90,10 +90,7 @@ def renew_ground(
             bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start, _turn(place.start))
         for obj in [] if place.gates else [obj for objects in gates for obj in objects]:
             obj[MARK] = True
-    for obj in build_obstacles(spec, terrain, collection, snow=ride.on_snow):
-        obj[MARK] = True
-        if place.start is not None:
-            obj.matrix_world = place.start.matrix_world @ obj.matrix_basis
+    made += build_obstacles(spec, terrain, collection, snow=ride.on_snow)
     for obj in made:
         obj[MARK] = True
         obj.parent = place.start

@@ -41,6 +41,29 @@ def test_all_firs_are_one_object_and_a_thin_disc_is_a_pole(draw):
     assert [obj.name.split(".")[0] for obj in made] == ["Obstacle 3", "Obstacle firs"]
 
 
+def test_a_pole_stands_plumb_in_the_snow(draw):
+    (pole,), terrain = draw(DISC | {"radius": 0.05}, snow=True)
+    points = points_of(pole)
+    x, y = 10.0 * np.cos(terrain.mean_angle), 3.0
+    np.testing.assert_allclose(points[:, :2].mean(axis=0), (x, y), atol=1e-5)
+    assert np.abs(points[:, :2] - (x, y)).max() < 0.02
+    ground = float(terrain.height(x, y))
+    assert points[:, 2].min() < ground - 0.2 and ground + 1.7 < points[:, 2].max() < ground + 1.9
+
+
+def test_a_net_follows_its_line_upright_on_the_snow(draw):
+    (net,), terrain = draw(LINE, snow=True)
+    points = points_of(net)
+    over = points[:, 2] - terrain.height(points[:, 0], points[:, 1])
+    assert over.min() < 0.1 and 0.8 < over.max() < 2.5
+    ends = np.array(LINE["points"]) * (np.cos(terrain.mean_angle), 1.0)
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    aside = (points[:, :2] - ends[0]) @ np.array((-along[1], along[0]))
+    way = (points[:, :2] - ends[0]) @ along
+    assert np.abs(aside).max() < 0.1
+    assert abs(way.min()) < 0.1 and abs(way.max() - np.linalg.norm(ends[1] - ends[0])) < 0.1
+
+
 def test_holes_and_edges_lie_on_the_ground_and_look_up(draw):
     made, terrain = draw(DISC | {"radius": 0.4}, LINE, snow=False)
     for obj in made:
