@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import tempfile
 from pathlib import Path
@@ -39,15 +40,21 @@ def own_presets(kind: str) -> tuple[Preset, ...]:
     found = []
     for path in sorted(own_folder(kind).glob("*.toml")):
         try:
-            found.append(Preset(kind, OWN + path.stem, path, *_said(path)))
+            found.append(Preset(kind, OWN + path.stem, path, *_said(path, _age(path))))
         except SpecError:
             continue
     return tuple(found)
 
 
+@functools.cache
+def shipped_presets(kind: str) -> tuple[Preset, ...]:
+    """Return the shipped presets of a kind; they are read once, for they are asked for at every redraw."""
+    return list_presets(kind)
+
+
 def all_presets(kind: str) -> tuple[Preset, ...]:
     """Return the shipped presets of a kind, then the user's own."""
-    return (*list_presets(kind), *own_presets(kind))
+    return (*shipped_presets(kind), *own_presets(kind))
 
 
 def find_preset(kind: str, identifier: str) -> Preset:
@@ -61,7 +68,20 @@ def find_preset(kind: str, identifier: str) -> Preset:
 def laid_over(spec: RunSpec, kind: str, identifier: str) -> RunSpec:
     """Return the run of a preset, or `spec` with a part laid over it; raises `SkiAddonError`."""
     path = find_preset(kind, identifier).path
-    return RunSpec.from_toml(path) if kind == "runs" else spec.with_part(path)
+    return _run_of(path, _age(path)) if kind == "runs" else spec.with_part(path)
+
+
+@functools.lru_cache(maxsize=64)
+def _run_of(path: Path, _age: int) -> RunSpec:
+    return RunSpec.from_toml(path)
+
+
+def _age(path: Path) -> int:
+    """Return when a file was changed last: what was read of it counts until then."""
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 def save_own(spec: RunSpec, kind: str, name: str) -> Preset:
@@ -101,7 +121,8 @@ def remove_own(kind: str, identifier: str) -> None:
         raise OutputError(path, error.strerror or str(error)) from error
 
 
-def _said(path: Path) -> tuple[str, str]:
+@functools.lru_cache(maxsize=256)
+def _said(path: Path, _age: int) -> tuple[str, str]:
     from ..spec.document import parse_document, read_text
 
     content = parse_document(read_text(path), str(path)).content

@@ -6,8 +6,8 @@ from typing import Any
 
 import bpy
 
-from ..spec import PRESET_KINDS, list_presets
-from .own_presets import OWN, own_presets
+from ..spec import PRESET_KINDS
+from .own_presets import OWN, all_presets, own_presets, shipped_presets
 
 MENU = "SKI_MT_{}_presets"
 TITLES = {"runs": "Runs", "courses": "Courses", "skiers": "Skiers", "snow": "Snow", "styles": "Styles"}
@@ -25,7 +25,7 @@ def draw_menu_button(layout: Any, kind: str, text: str = "") -> None:
 
 def _draw_menu(self: Any, _context: Any) -> None:
     layout, kind = self.layout, self.kind
-    for preset in list_presets(kind):
+    for preset in shipped_presets(kind):
         _entry(layout, kind, preset.identifier, preset.name)
     own = own_presets(kind)
     layout.separator()
@@ -50,7 +50,7 @@ def _entry(layout: Any, kind: str, identifier: str, name: str) -> None:
 
 
 def _draw_start_menu(self: Any, _context: Any) -> None:
-    for preset in (*list_presets("runs"), *own_presets("runs")):
+    for preset in all_presets("runs"):
         self.layout.operator("ski.add_skier", text=preset.name).preset = preset.identifier
 
 

@@ -42,7 +42,7 @@ def read_spec(settings: Any) -> RunSpec:
         rows = read_rows(settings, kind)
         if rows:
             content[kind] = rows
-    return _with_scene(RunSpec.from_dict(content), settings)
+    return RunSpec.from_dict({**content, **_of_scene(settings)})
 
 
 def read_slope(settings: Any) -> RunSpec:
@@ -55,14 +55,16 @@ def _read_section(settings: Any, section: str) -> dict[str, Any]:
     return {info.name: read_field(group, info) for info in section_fields(section)}
 
 
-def _with_scene(spec: RunSpec, settings: Any) -> RunSpec:
-    """Return `spec` with the gates that stand in the scene and the path that a curve draws there."""
-    course = spec.course
-    gates = gate_rows(settings, spec) if course.kind == "gates" and course.gate_setting == "list" else None
-    if gates is not None:
-        return RunSpec.from_dict({**spec.to_dict(), "gate": gates})
-    points = curve_points(settings, spec) if course.kind in ("path", "follow") else None
-    return spec if points is None else RunSpec.from_dict({**spec.to_dict(), "point": points})
+def _of_scene(settings: Any) -> dict[str, Any]:
+    """Return the rows of the gates that stand in the scene, or of the path that a curve draws there."""
+    course = settings.course
+    if course.kind == "gates" and course.gate_setting == "list":
+        gates = gate_rows(settings, read_slope(settings))
+        return {} if gates is None else {"gate": gates}
+    if course.kind in ("path", "follow"):
+        points = curve_points(settings, read_slope(settings))
+        return {} if points is None else {"point": points}
+    return {}
 
 
 def write_spec(settings: Any, spec: RunSpec) -> None:

@@ -131,19 +131,18 @@ class RunSpec:
 
     def _merged(self, content: Mapping[str, Any]) -> RunSpec:
         """Return a checked copy with the given tables laid over this spec."""
-        flat = table.flattened(content)
-        changed = self
-        for key, value in flat.items():
-            info = table.find_field(key)
-            changed = _replaced(changed, key, row_values.read_rows(info, value) if info.kind == ROWS else value)
-        changed.validate()
-        for key in flat:
-            changed = _replaced(changed, key, values.canonical(table.find_field(key), table.get_value(changed, key)))
-        return changed
+        infos = {key: table.find_field(key) for key in table.flattened(content)}
+        flat = {
+            key: row_values.read_rows(infos[key], value) if infos[key].kind == ROWS else value
+            for key, value in table.flattened(content).items()
+        }
+        _replaced(self, flat).validate()
+        return _replaced(self, {key: values.canonical(infos[key], value) for key, value in flat.items()})
 
 
-def _replaced(spec: RunSpec, key: str, value: Any) -> RunSpec:
-    section, _, name = key.rpartition(".")
-    if not section:
-        return dataclasses.replace(spec, **{name: value})
-    return dataclasses.replace(spec, **{section: dataclasses.replace(getattr(spec, section), **{name: value})})
+def _replaced(spec: RunSpec, flat: Mapping[str, Any]) -> RunSpec:
+    """Return a copy with the values of dotted keys; each section is made once."""
+    changes = table.nested(flat)
+    for section in table.SECTIONS.keys() & changes.keys():
+        changes[section] = dataclasses.replace(getattr(spec, section), **changes[section])
+    return dataclasses.replace(spec, **changes)
