@@ -13,7 +13,7 @@ export MKL_NUM_THREADS := 1
 
 CORE_TESTS := tests --ignore=tests/blender --ignore=tests/gui
 
-.PHONY: env test test-core test-blender acceptance demo build build-dev lint format types clean
+.PHONY: env test test-core test-blender acceptance acceptance-matrix acceptance-slow demo build build-dev lint format types clean
 .DEFAULT_GOAL := env
 
 env: .venv/.complete
@@ -39,8 +39,13 @@ test-blender: env
 	else echo "no bpy in .venv: the Blender tests were not run"; fi
 
 # The papers' whole grid of runs: minutes.
-acceptance: env
+# The two parts are independent: `make -j2 acceptance` runs them side by side.
+acceptance: acceptance-matrix acceptance-slow
+
+acceptance-matrix: env
 	$(PY) -m tests.acceptance.full_matrix
+
+acceptance-slow: env
 	$(PY) -m pytest -q $(CORE_TESTS) -m slow
 
 demo: env
