@@ -12,6 +12,7 @@ from ..animation.target import REQUIRED, main_bones
 from ..errors import SkiAddonError, SpecError
 from .armature_checks import check_object
 from .bake import BONE_MAP
+from .preferences import user_folder
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,9 @@ class FoundMap:
     unreadable: tuple[str, ...] = ()
 
 
-def user_map_folder() -> Path | None:
-    """Return the folder for the user's own bone maps, or None where the library runs without the extension."""
-    try:
-        return Path(bpy.utils.extension_path_user(__package__.rpartition(".ski_addon.blender")[0], path="bone_maps"))
-    except ValueError:
-        return None
+def user_map_folder() -> Path:
+    """Return the folder for the user's own bone maps; it may not be there yet."""
+    return user_folder("bone_maps")
 
 
 def detect_bone_map(armature: bpy.types.Object, folders: tuple[Path, ...] | None = None) -> FoundMap:
@@ -42,8 +40,7 @@ def detect_bone_map(armature: bpy.types.Object, folders: tuple[Path, ...] | None
     """
     check_object(armature)
     if folders is None:
-        own = user_map_folder()
-        folders = (*((own,) if own else ()), BONE_MAP.parent)
+        folders = (user_map_folder(), BONE_MAP.parent)
     unreadable: list[str] = []
     found: list[tuple[bool, float, int, Path, BoneMap, tuple[str, ...]]] = []
     for path in (path for folder in folders for path in sorted(folder.glob("*.toml"))):

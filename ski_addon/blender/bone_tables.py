@@ -71,8 +71,6 @@ def save_map(armature: bpy.types.Object, name: str) -> Path:
         hint = "find the bones first, and give the map a name with letters"
         raise SpecError("bone map", name, hint=hint, problem="cannot be kept")
     folder = user_map_folder()
-    if folder is None:
-        raise OutputError(name, "the add-on is not installed as an extension, so there is no folder for bone maps")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

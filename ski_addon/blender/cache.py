@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,12 +10,13 @@ import bpy
 
 from ..atomic import check_writable_folder
 from ..errors import MissingInputError, OutputError
-from .preferences import preferences
+from .preferences import preferences, user_folder
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
 
 FOLDER = "ski_cache"
+_OWN = re.compile(r"_[0-9a-f]{16}\.npz$")
 KEPT = 10
 """Recordings of files that were never saved that are kept in the user's cache, newest first."""
 
@@ -75,17 +75,15 @@ def user_cache() -> Path:
         except OSError as error:
             raise OutputError(folder, f"{error.strerror}: choose another folder in the add-on's preferences") from error
         return folder
-    package = __package__.rpartition(".ski_addon.blender")[0]
-    try:
-        return Path(bpy.utils.extension_path_user(package, path="cache", create=True))
-    except ValueError:  # not installed as an extension: a script imports the library
-        folder = Path(tempfile.gettempdir()) / FOLDER
-        folder.mkdir(exist_ok=True)
-        return folder
+    folder = user_folder("cache")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def _forget_old(folder: Path) -> None:
-    recordings = sorted(folder.glob("*.npz"), key=lambda path: path.stat().st_mtime, reverse=True)
+    """Remove the oldest recordings; the folder may be one where the user keeps other files, and slopes lie there."""
+    own = [path for path in folder.glob("*.npz") if _OWN.search(path.name)]
+    recordings = sorted(own, key=lambda path: path.stat().st_mtime, reverse=True)
     for path in recordings[KEPT:]:
         path.unlink(missing_ok=True)
 

@@ -26,6 +26,7 @@ def add_gate(settings: Any, place: Array) -> bpy.types.Object:
     pole = _new_pole(settings, place)
     drop_baked_gates(settings)
     use_standing(settings)
+    turn_round_the_outside(settings)
     refresh_gates(settings)
     return pole
 
@@ -64,6 +65,17 @@ def clear_gates(settings: Any) -> None:
     poles = [obj for obj in settings.gates.all_objects if obj.ski_gate.is_gate]
     for obj in [part for pole in poles for part in pole.children] + poles:
         bpy.data.objects.remove(obj)
+
+
+def turn_round_the_outside(settings: Any) -> None:
+    """Let the first turn be the one that goes round the outside of the first gate, seen from the second.
+
+    Turns alternate from there, so whoever sets gates from side to side need not know which turn comes first.
+    """
+    bpy.context.view_layer.update()
+    gates = read_spec(settings).gate
+    if len(gates) > 1:
+        settings.course.first_turn = "right" if gates[0].y > gates[1].y else "left"
 
 
 def drop_baked_gates(settings: Any) -> None:

@@ -103,7 +103,7 @@ def preview_of(settings: Any, before: Preview | None = None, *, quick: bool = Fa
     matrix = world_from_run(settings)
     try:
         spec = read_spec(settings)
-        bare = settings.ground is None
+        bare = _is_bare(settings)
         key = f"{spec.content_hash()} {matrix.tobytes().hex()} {bare}"
     except SkiAddonError as error:
         return _without_track(str(error), before)
@@ -141,8 +141,7 @@ def _with_track(settings: Any, spec: RunSpec, matrix: Array, key: str, before: P
     if refused.any() and not problem:
         problem, place = _too_much_lean(spec, motion, refused), line[int(np.argmax(refused))]
     gates = _numbers(settings, spec)
-    bare = settings.ground is None and settings.slope_mesh is None
-    ground = moved(matrix, ground_lines(spec, motion.position)) if bare else np.zeros((0, 3))
+    ground = moved(matrix, ground_lines(spec, motion.position)) if _is_bare(settings) else np.zeros((0, 3))
     speeds = slow, fast
     return Preview(key, line, colour, gates, problem, place, speeds, motion, spec, matrix, ground, quick)
 
@@ -158,11 +157,16 @@ def ground_lines(spec: RunSpec, track: Array) -> Array:
     return np.concatenate((along, across))
 
 
-def _without_track(problem: str, before: Preview | None, gates: tuple[Numbered, ...] = ()) -> Preview:
+def _is_bare(settings: Any) -> bool:
+    """Return whether the slope has no mesh to be seen by."""
+    return settings.ground is None and settings.slope_mesh is None
+
+
+def _without_track(problem: str, before: Preview | None) -> Preview:
     if before is None:
-        return Preview("", np.zeros((0, 3)), np.zeros((0, 4)), gates, problem)
+        return Preview("", np.zeros((0, 3)), np.zeros((0, 4)), problem=problem)
     grey = np.tile((0.5, 0.5, 0.5, 0.6), (len(before.line), 1))
-    return Preview("", before.line, grey, gates or before.gates, problem)
+    return Preview("", before.line, grey, before.gates, problem)
 
 
 def speed_colours(speed: Array) -> Array:
@@ -296,7 +300,7 @@ def _after_change(_scene: Any, _depsgraph: Any = None) -> None:
 
 @bpy.app.handlers.persistent
 def _after_load(_path: Any) -> None:
-    STATE.preview, CURSOR.place = None, None
+    STATE.preview, STATE.overlay, CURSOR.place = None, "", None  # the overlay hides itself
     request()
 
 
@@ -332,9 +336,10 @@ def register() -> None:
 def unregister() -> None:
     """Stop listening and drawing."""
     if not bpy.app.background:
-        from . import live_drawing
+        from . import live_drawing, overlay
 
         live_drawing.stop()
+        overlay.hide()
         for timer in (_tick, _settle):
             if bpy.app.timers.is_registered(timer):
                 bpy.app.timers.unregister(timer)
@@ -343,3 +348,4 @@ def unregister() -> None:
             handlers.remove(handler)
     changes.unlisten(request)
     STATE.preview = STATE.figure = None
+    STATE.overlay = ""

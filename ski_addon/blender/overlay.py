@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..frames import Array
+from .gpu_lines import draw_batch, drawing_over, line_batch, write_at
 from .overlay_data import OverlayData, OverlayMoment, build_overlay
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ class _Overlay:
         self._frame: float | None = None
         self._moment: OverlayMoment | None = None
         self._batch: Any = None
-        self._shader: Any = None
         self._failed = False
         self._handlers: list[Any] = []
 
@@ -76,52 +76,18 @@ class _Overlay:
 
     def draw_lines(self) -> None:
         """Draw the lines into the 3D view that is being drawn."""
-        import gpu
-        from gpu_extras.batch import batch_for_shader
-
-        context = bpy.context
-        moment = self.moment(context.scene.frame_current_final)
-        if self._shader is None:
-            self._shader = gpu.shader.from_builtin("POLYLINE_FLAT_COLOR")
+        moment = self.moment(bpy.context.scene.frame_current_final)
         if self._batch is None:
-            points = self.to_world(moment.segments).reshape(-1, 3).astype(np.float32)
-            colors = np.repeat(moment.colors, 2, axis=0).astype(np.float32)
-            self._batch = batch_for_shader(self._shader, "LINES", {"pos": points, "color": colors})
-        blend, depth, mask = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
-        try:
-            gpu.state.blend_set("ALPHA")
-            gpu.state.depth_test_set("NONE")
-            gpu.state.depth_mask_set(False)
-            self._shader.bind()
-            self._shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-            self._shader.uniform_float("lineWidth", LINE_WIDTH * context.preferences.system.ui_scale)
-            self._batch.draw(self._shader)
-        finally:
-            gpu.state.blend_set(blend)
-            gpu.state.depth_test_set(depth)
-            gpu.state.depth_mask_set(mask)
+            points = self.to_world(moment.segments).reshape(-1, 3)
+            self._batch = line_batch(points, np.repeat(moment.colors, 2, axis=0))
+        batch, shader = self._batch
+        with drawing_over():
+            draw_batch(batch, shader, LINE_WIDTH)
 
     def draw_words(self) -> None:
         """Write the labels over the 3D view that is being drawn."""
-        import blf
-        from bpy_extras.view3d_utils import location_3d_to_region_2d
-        from mathutils import Vector
-
-        context = bpy.context
-        blf.size(0, TEXT_SIZE * context.preferences.system.ui_scale)
-        blf.enable(0, blf.SHADOW)  # letters are read over snow and over the dark background
-        try:
-            blf.shadow(0, 5, 0.0, 0.0, 0.0, 0.8)
-            for label in self.moment(context.scene.frame_current_final).labels:
-                place = Vector(self.to_world(label.place).tolist())
-                spot = location_3d_to_region_2d(context.region, context.region_data, place)
-                if spot is not None:  # in front of the eye
-                    wide, high = blf.dimensions(0, label.words)
-                    blf.color(0, *label.color.tolist())
-                    blf.position(0, spot.x - 0.5 * wide, spot.y - 0.5 * high, 0.0)
-                    blf.draw(0, label.words)
-        finally:
-            blf.disable(0, blf.SHADOW)
+        for label in self.moment(bpy.context.scene.frame_current_final).labels:
+            write_at(label.words, self.to_world(label.place), label.color.tolist(), TEXT_SIZE)
 
 
 _shown: list[_Overlay] = []

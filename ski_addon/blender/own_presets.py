@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import functools
 import re
-import tempfile
 from pathlib import Path
-
-import bpy
 
 from ..atomic import write_text
 from ..errors import MissingInputError, OutputError, SpecError
 from ..spec import PRESET_KINDS, Preset, RunSpec, list_presets, row_kinds
-from ..spec.document import write_document
+from ..spec.document import parse_document, read_text, write_document
+from .preferences import user_folder
 
 OWN = "own/"
 """What the names of the user's own presets begin with, so that they never hide a shipped one."""
@@ -27,12 +25,7 @@ SECTIONS_OF = {
 
 def own_folder(kind: str) -> Path:
     """Return the folder of the user's own presets of a kind; it may not be there yet."""
-    package = __package__.rpartition(".ski_addon.blender")[0]
-    try:
-        root = Path(bpy.utils.extension_path_user(package, path="presets"))
-    except ValueError:  # not installed as an extension: a script imports the library
-        root = Path(tempfile.gettempdir()) / "ski_addon_presets"
-    return root / kind
+    return user_folder("presets") / kind
 
 
 def own_presets(kind: str) -> tuple[Preset, ...]:
@@ -123,7 +116,5 @@ def remove_own(kind: str, identifier: str) -> None:
 
 @functools.lru_cache(maxsize=256)
 def _said(path: Path, _age: int) -> tuple[str, str]:
-    from ..spec.document import parse_document, read_text
-
     content = parse_document(read_text(path), str(path)).content
     return str(content.get("name", path.stem)), str(content.get("description", ""))

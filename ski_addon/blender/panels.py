@@ -8,12 +8,13 @@ from typing import Any
 import bpy
 
 from ..dependencies import missing_dependencies
-from ..spec import row_kinds
+from ..errors import SkiAddonError
+from ..spec import RunSpec, row_kinds
 from . import live
-from .course_objects import gate_fields
 from .jobs import RUNNING
-from .own_presets import find_preset
-from .panel_fields import EXPERT, MORE, draw_field, draw_fields, draw_rows, folded_fields, row_words, top_fields
+from .own_presets import find_preset, laid_over
+from .panel_fields import EXPERT, MORE, draw_fields, draw_rows, folded_fields, row_words, top_fields
+from .panel_parts import draw_beginning, draw_bones, draw_gates, draw_stage
 from .panel_stages import columns_of, draw_progress, draw_result, draw_words
 from .preferences import is_expert
 from .preset_menus import CLASSES as MENUS
@@ -21,9 +22,25 @@ from .preset_menus import draw_menu_button
 from .properties import run_hash
 from .shown import settings_of, skier_of, skiers
 
-SPACE = {"bl_space_type": "VIEW_3D", "bl_region_type": "UI", "bl_category": "Ski"}
 PHYSICS_ONLY = "alpine"
 """The kind of figure that the whole physics is for."""
+
+
+class _InTab:
+    """What all panels of the tab share."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Ski"
+
+
+class _Step(_InTab):
+    """A step of the work with a skier: shown as soon as there is one."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A skier must be shown."""
+        return skier_of(context) is not None
 
 
 class SKI_UL_rows(bpy.types.UIList):
@@ -48,11 +65,10 @@ class SKI_UL_bones(bpy.types.UIList):
         split.label(text=item.bone or "none", icon="BONE_DATA" if item.bone else "ERROR")
 
 
-class SKI_PT_skier(bpy.types.Panel):
+class SKI_PT_skier(_InTab, bpy.types.Panel):
     """Who skis."""
 
     bl_label = "Skier"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         """Draw the menu of persons."""
@@ -70,7 +86,7 @@ class SKI_PT_skier(bpy.types.Panel):
         if len(skiers(context.scene)) > 1:
             layout.prop(context.scene, "ski_skier", text="Shown")
         if skier is None:
-            _draw_beginning(layout)
+            draw_beginning(layout)
             return
         settings = skier.ski
         row = layout.row(align=True)
@@ -81,7 +97,7 @@ class SKI_PT_skier(bpy.types.Panel):
         if _is_changed(settings):
             row.operator("ski.reset_to_preset", text="", icon="LOOP_BACK")
         if settings.is_own:
-            _draw_bones(layout, skier)
+            draw_bones(layout, skier)
         draw_fields(layout, settings, top_fields(settings, "figure") + top_fields(settings, "skier"))
         from .skiers import wears_shown
 
@@ -89,17 +105,11 @@ class SKI_PT_skier(bpy.types.Panel):
             layout.operator("ski.fit_figure", icon="FILE_REFRESH")
 
 
-class SKI_PT_slope(bpy.types.Panel):
+class SKI_PT_slope(_Step, bpy.types.Panel):
     """Where it goes down."""
 
     bl_label = "Slope"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the slope's shape, or the mesh that is the slope."""
@@ -116,16 +126,10 @@ class SKI_PT_slope(bpy.types.Panel):
         layout.prop(settings, "start")
 
 
-class SKI_PT_course(bpy.types.Panel):
+class SKI_PT_course(_Step, bpy.types.Panel):
     """Where the skis go."""
 
     bl_label = "Course"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw_header_preset(self, _context: bpy.types.Context) -> None:
         """Draw the menu of courses."""
@@ -137,7 +141,7 @@ class SKI_PT_course(bpy.types.Panel):
         draw_fields(layout, settings, top_fields(settings, "course"))
         kind = settings.course.kind
         if kind == "gates":
-            _draw_gates(layout, context, settings)
+            draw_gates(layout, context, settings)
         if kind in ("path", "follow"):
             layout.prop(settings, "curve")
         if kind == "rhythm":
@@ -152,17 +156,11 @@ class SKI_PT_course(bpy.types.Panel):
             draw_words(layout, preview.problem, columns_of(context), "ERROR", alert=True)
 
 
-class SKI_PT_technique(bpy.types.Panel):
+class SKI_PT_technique(_Step, bpy.types.Panel):
     """How it is skied."""
 
     bl_label = "Technique"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw_header_preset(self, _context: bpy.types.Context) -> None:
         """Draw the menu of styles."""
@@ -174,17 +172,11 @@ class SKI_PT_technique(bpy.types.Panel):
         draw_fields(_prepared(self.layout), settings, top_fields(settings, "technique"))
 
 
-class SKI_PT_snow(bpy.types.Panel):
+class SKI_PT_snow(_Step, bpy.types.Panel):
     """What the skis run on."""
 
     bl_label = "Snow"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw_header_preset(self, _context: bpy.types.Context) -> None:
         """Draw the menu of snow."""
@@ -196,16 +188,10 @@ class SKI_PT_snow(bpy.types.Panel):
         draw_fields(_prepared(self.layout), settings, top_fields(settings, "snow"))
 
 
-class SKI_PT_simulate(bpy.types.Panel):
+class SKI_PT_simulate(_Step, bpy.types.Panel):
     """Ski it by physics."""
 
     bl_label = "Simulate"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw Plan and Simulate with their answers."""
@@ -214,9 +200,9 @@ class SKI_PT_simulate(bpy.types.Panel):
             draw_words(layout, "The physics is for alpine skiers: bake the preview of this figure", columns, "INFO")
             return
         asked = run_hash(settings)
-        _draw_stage(layout, "ski.plan", "CURVE_PATH", not missing_dependencies())
+        draw_stage(layout, "ski.plan", "CURVE_PATH", not missing_dependencies())
         draw_result(layout, settings, "plan", asked, columns)
-        _draw_stage(layout, "ski.simulate", "PHYSICS", not missing_dependencies())
+        draw_stage(layout, "ski.simulate", "PHYSICS", not missing_dependencies())
         if settings.recording and not RUNNING.text:
             row = layout.row(align=True)
             row.enabled = not missing_dependencies()
@@ -229,16 +215,10 @@ class SKI_PT_simulate(bpy.types.Panel):
             draw_result(layout, settings, "simulation", asked, columns)
 
 
-class SKI_PT_bake(bpy.types.Panel):
+class SKI_PT_bake(_Step, bpy.types.Panel):
     """Make keyframes of it."""
 
     bl_label = "Bake"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the ways to bake and what the last one made."""
@@ -267,17 +247,11 @@ class SKI_PT_bake(bpy.types.Panel):
         draw_result(layout, settings, "bake", run_hash(settings), columns)
 
 
-class SKI_PT_analyse(bpy.types.Panel):
+class SKI_PT_analyse(_Step, bpy.types.Panel):
     """Look into it."""
 
     bl_label = "Analyse"
-    bl_space_type, bl_region_type, bl_category = SPACE.values()
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """A skier must be shown."""
-        return skier_of(context) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw what shows the recording."""
@@ -293,59 +267,7 @@ def _prepared(layout: Any) -> Any:
     return layout
 
 
-def _draw_beginning(layout: Any) -> None:
-    """Draw how to get a first skier."""
-    column = layout.column()
-    column.scale_y = 1.4
-    column.operator("ski.add_skier", icon="ADD")
-    layout.menu("SKI_MT_add_skier", icon="PRESET")
-    layout.operator("ski.use_armature", icon="ARMATURE_DATA")
-
-
-def _draw_bones(layout: Any, armature: bpy.types.Object) -> None:
-    """Draw the table of bones of an armature of the user's own."""
-    settings = armature.ski
-    row = layout.row(align=True)
-    row.operator("ski.find_bones", icon="BONE_DATA")
-    if not len(settings.bones):
-        return
-    row.operator("ski.save_bone_map", text="", icon="ADD")
-    layout.template_list("SKI_UL_bones", "", settings, "bones", settings, "bones_index", rows=5)
-    if 0 <= settings.bones_index < len(settings.bones):
-        chosen = settings.bones[settings.bones_index]
-        layout.prop_search(chosen, "bone", armature.data, "bones", text=chosen.wanted)
-
-
-def _draw_stage(layout: Any, operator: str, icon: str, possible: bool) -> None:
-    row = layout.column()
-    row.scale_y = 1.3
-    row.enabled = not RUNNING.text and possible
-    row.operator(operator, icon=icon)
-
-
-def _draw_gates(layout: Any, context: bpy.types.Context, settings: Any) -> None:
-    column = layout.column(align=True)
-    column.operator("ski.place_gates", icon="GREASEPENCIL")
-    row = column.row(align=True)
-    row.operator_menu_enum("ski.set_gates", "discipline", text="Set Course")
-    row.operator("ski.refresh_gates", text="", icon="SORTSIZE")
-    row.operator("ski.clear_gates", text="", icon="TRASH")
-    if settings.course.gate_setting != "list":
-        return
-    gate = context.object
-    if gate is not None and gate.ski_gate.is_gate:
-        box = layout.box().column(align=True)
-        box.label(text=gate.name, icon="OUTLINER_OB_FORCE_FIELD")
-        for info in gate_fields():
-            draw_field(box, gate.ski_gate, info)
-    if settings.gates is None or not settings.gates.all_objects:
-        draw_rows(layout, settings, "gate")
-        layout.prop(settings, "curve", text="Or a Curve")
-
-
 def _preset_name(settings: Any) -> str:
-    from ..errors import SkiAddonError
-
     try:
         return find_preset("runs", settings.preset).name
     except SkiAddonError:
@@ -353,10 +275,6 @@ def _preset_name(settings: Any) -> str:
 
 
 def _is_changed(settings: Any) -> bool:
-    from ..errors import SkiAddonError
-    from ..spec import RunSpec
-    from .own_presets import laid_over
-
     try:
         return laid_over(RunSpec(), "runs", settings.preset).content_hash() != run_hash(settings)
     except SkiAddonError:
@@ -384,7 +302,6 @@ def _folded(parent: str, sections: tuple[str, ...], level: str, draw_more: Calla
 
     name = f"{parent}_{level}"
     content = {
-        **SPACE,
         "__doc__": f"{label} of it.",
         "bl_label": label,
         "bl_parent_id": parent,
@@ -392,7 +309,7 @@ def _folded(parent: str, sections: tuple[str, ...], level: str, draw_more: Calla
         "poll": classmethod(poll),
         "draw": draw,
     }
-    return type(name, (bpy.types.Panel,), content)
+    return type(name, (_InTab, bpy.types.Panel), content)
 
 
 def _draw_pushes(layout: Any, settings: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -58,6 +60,17 @@ def preferences() -> Any:
     """Return the preferences, or None where the library runs without being installed as an extension."""
     addon = bpy.context.preferences.addons.get(PACKAGE)
     return None if addon is None else addon.preferences
+
+
+def user_folder(name: str) -> Path:
+    """Return the add-on's folder `name` among the user's own; it may not be there yet.
+
+    Where the library runs without being installed as an extension it is a temporary one.
+    """
+    try:
+        return Path(bpy.utils.extension_path_user(PACKAGE, path=name))
+    except ValueError:
+        return Path(tempfile.gettempdir()) / "ski_addon" / name
 
 
 def is_expert(_context: Any) -> bool:

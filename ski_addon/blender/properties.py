@@ -135,16 +135,10 @@ def is_skier(_owner: Any, obj: bpy.types.Object) -> bool:
     return obj.type == "ARMATURE" and obj.ski.is_skier
 
 
-def _settings_group(groups: dict[str, type], lists: dict[str, type], bones: type, spec: RunSpec) -> type:
-    """Return the property group of `armature.ski`."""
+def _scene_properties() -> dict[str, Any]:
+    """Return the properties of a skier's settings that name objects of the scene."""
     string, pointer = bpy.props.StringProperty, bpy.props.PointerProperty
-    annotations: dict[str, Any] = {
-        "is_skier": bpy.props.BoolProperty(name="Is a Skier", options={"HIDDEN"}),
-        "is_own": bpy.props.BoolProperty(name="Is an Armature of the User", options={"HIDDEN"}),
-        "preset": string(name="Preset", description="The preset that was chosen last", options={"HIDDEN"}),
-        "run_name": string(name="Name", description="Name of the run", default=spec.name, maxlen=120),
-        "run_description": string(name="Description", default=spec.description, maxlen=2000),
-        "rows": string(name="Points", options={"HIDDEN"}),
+    return {
         "start": pointer(
             name="Start", description="Where the run starts, its arrow X down the fall line; move it to move the run",
             type=bpy.types.Object,
@@ -162,6 +156,12 @@ def _settings_group(groups: dict[str, type], lists: dict[str, type], bones: type
             default=0.0, min=0.0, max=20.0, unit="LENGTH",
         ),
         "slope_said": string(name="Sampled", options={"HIDDEN"}),
+    }  # fmt: skip
+
+
+def _bake_properties() -> dict[str, Any]:
+    """Return the properties that say how a run is baked in Blender, beyond the run document's own."""
+    return {
         "as_strip": bpy.props.BoolProperty(
             name="As NLA Strip", description="Make a strip on a track of its own instead of the active action",
         ),
@@ -196,10 +196,24 @@ def _settings_group(groups: dict[str, type], lists: dict[str, type], bones: type
             name="Skis and Poles", description="Whether skis and poles are made for your character",
             items=[("objects", "As Objects", "Skis and poles of their own, keyed"), ("none", "None", "No gear")],
         ),
+    }  # fmt: skip
+
+
+def _settings_group(groups: dict[str, type], lists: dict[str, type], bones: type, spec: RunSpec) -> type:
+    """Return the property group of `armature.ski`."""
+    string, pointer = bpy.props.StringProperty, bpy.props.PointerProperty
+    annotations: dict[str, Any] = {
+        "is_skier": bpy.props.BoolProperty(name="Is a Skier", options={"HIDDEN"}),
+        "is_own": bpy.props.BoolProperty(name="Is an Armature of the User", options={"HIDDEN"}),
+        "preset": string(name="Preset", description="The preset that was chosen last", options={"HIDDEN"}),
+        "run_name": string(name="Name", description="Name of the run", default=spec.name, maxlen=120),
+        "run_description": string(name="Description", default=spec.description, maxlen=2000),
+        "rows": string(name="Points", options={"HIDDEN"}),
         "ground": pointer(name="Ground", type=bpy.types.Collection),
         "gates": pointer(name="Gates", type=bpy.types.Collection),
         "recording": string(name="Recording", options={"HIDDEN"}),
     }  # fmt: skip
+    annotations |= _scene_properties() | _bake_properties()
     annotations |= {name: pointer(type=group) for name, group in groups.items()}
     annotations["bones"] = bpy.props.CollectionProperty(name="Bones", type=bones)
     annotations["bones_index"] = bpy.props.IntProperty(options={"HIDDEN"})

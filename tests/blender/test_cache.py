@@ -55,14 +55,32 @@ def test_a_folder_that_takes_no_files_falls_back_to_the_user_s(cache, scene, tmp
 def test_only_the_newest_are_kept(cache, scene) -> None:
     folder = cache.user_cache()
     for index in range(15):
-        path = folder / f"old_{index:02d}.npz"
+        path = folder / f"Scene_{index:016x}.npz"
         path.write_bytes(b"old")
         os.utime(path, (1_000_000 + index, 1_000_000 + index))
     cache.save_recording(Kept(), scene.name)
     left = sorted(path.name for path in folder.glob("*.npz"))
     assert len(left) == cache.KEPT
-    assert "old_14.npz" in left
-    assert "old_00.npz" not in left
+    assert f"Scene_{14:016x}.npz" in left
+    assert f"Scene_{0:016x}.npz" not in left
+
+
+def test_only_recordings_are_ever_removed(core, cache, scene, tmp_path: Path) -> None:
+    """The folder may be one of the user's own choice, with other files in it."""
+    known = core("blender.preferences").preferences()
+    known.cache_folder = str(tmp_path)
+    try:
+        others = [tmp_path / name for name in ("thesis.npz", "Skier_slope.npz")]
+        for path in others:
+            path.write_bytes(b"mine")
+            os.utime(path, (1, 1))
+        for index in range(15):
+            (tmp_path / f"Scene_{index:016x}.npz").write_bytes(b"old")
+        assert Path(cache.save_recording(Kept(), scene.name)).parent == tmp_path
+        assert all(path.is_file() for path in others)
+        assert len(list(tmp_path.glob("Scene_*.npz"))) == cache.KEPT
+    finally:
+        known.cache_folder = ""
 
 
 def test_nothing_simulated_yet_is_said(core, cache) -> None:

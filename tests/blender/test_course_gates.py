@@ -120,6 +120,24 @@ def test_added_gates_are_numbered_down_the_slope(ski, read) -> None:
     assert all(pole.matrix_world.translation.z < 0.0 for pole in poles(ski))  # down on the snow
 
 
+@pytest.mark.parametrize("before", ["left", "right"])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_gates_set_from_side_to_side_are_passed_on_their_outsides(core, ski, read, before, side) -> None:
+    """Whatever turn came first in the run before: the track goes round each pole, not between them."""
+    import bpy
+
+    ski.course.first_turn, ski.course.start_speed = before, 6.0
+    ski.course.target_speed_word, ski.course.target_speed = False, 7.0
+    for index in range(5):
+        bpy.ops.ski.add_gate(location=(20.0 + 11.0 * index, side * (1.0 if index % 2 == 0 else -1.0), 0.0))
+    shown = core("blender.live").preview_of(ski)
+    assert not shown.problem, shown.problem
+    for pole in poles(ski):
+        x, y, _ = pole.matrix_world.translation
+        nearest = shown.line[int(np.argmin(np.hypot(shown.line[:, 0] - x, shown.line[:, 1] - y)))]
+        assert abs(nearest[1]) > abs(y)
+
+
 def test_gates_stay_where_they_are_and_are_read_from_a_moved_start(ski, read) -> None:
     import bpy
 

@@ -242,7 +242,10 @@ def from_nothing_to_playing() -> Steps:
     scene.frame_set((scene.frame_start + scene.frame_end) // 2)
     place = skier().matrix_world @ skier().pose.bones["pelvis"].head
     yield from look_from(tuple(place), 6.0, 12.0, -60.0)
+    bpy.ops.ski.toggle_overlay()
     yield from screenshot("5_baked")
+    note("overlay", overlay=library("blender.overlay").is_shown())
+    bpy.ops.ski.toggle_overlay()
 
 
 def area_of_view() -> bpy.types.Area:

@@ -65,7 +65,19 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_everything_was_done_by_mouse(outcome: dict[str, Any]) -> None:
     assert not outcome["error"], outcome["error"]
-    steps = ["preset", "simulate", "bake", "play", "stop", "undo_bake", "gates", "drag", "undo_gates", "impossible"]
+    steps = [
+        "preset",
+        "simulate",
+        "bake",
+        "play",
+        "overlay",
+        "stop",
+        "undo_bake",
+        "gates",
+        "drag",
+        "undo_gates",
+        "impossible",
+    ]
     assert outcome["steps"] == steps
 
 
@@ -79,6 +91,10 @@ def test_the_run_was_simulated_baked_and_played(outcome: dict[str, Any]) -> None
     assert outcome["frames"][1] - outcome["frames"][0] > 100
     assert outcome["bones"] >= 20
     assert outcome["frame_reached"] > 1
+
+
+def test_the_overlay_was_drawn(outcome: dict[str, Any]) -> None:
+    assert outcome["overlay"]  # a handler that fails takes itself away
 
 
 def test_esc_kept_what_was_done(outcome: dict[str, Any]) -> None:
