@@ -12,8 +12,10 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 CORE_TESTS := tests --ignore=tests/blender --ignore=tests/gui
+# One process a core; the tests of a file stay together, for they share what their fixtures have made.
+SIDE_BY_SIDE := -n auto --dist loadfile
 
-.PHONY: env test test-core test-blender acceptance acceptance-matrix acceptance-slow demo build build-dev lint format types clean
+.PHONY: env test test-core test-blender acceptance demo build build-dev lint format types clean
 .DEFAULT_GOAL := env
 
 env: .venv/.complete
@@ -31,7 +33,7 @@ env: .venv/.complete
 test: test-core test-blender
 
 test-core: env
-	$(PY) -m pytest -q $(CORE_TESTS) -m "not slow"
+	$(PY) -m pytest -q $(SIDE_BY_SIDE) $(CORE_TESTS) -m "not slow"
 
 test-blender: env
 	@if $(PY) -c 'import importlib.util as u, sys; sys.exit(u.find_spec("bpy") is None)'; then \
@@ -39,14 +41,9 @@ test-blender: env
 	else echo "no bpy in .venv: the Blender tests were not run"; fi
 
 # The papers' whole grid of runs: minutes.
-# The two parts are independent: `make -j2 acceptance` runs them side by side.
-acceptance: acceptance-matrix acceptance-slow
-
-acceptance-matrix: env
+acceptance: env
 	$(PY) -m tests.acceptance.full_matrix
-
-acceptance-slow: env
-	$(PY) -m pytest -q $(CORE_TESTS) -m slow
+	$(PY) -m pytest -q -n auto --dist worksteal $(CORE_TESTS) -m slow
 
 demo: env
 	$(PY) -m ski_addon demo -o out/demo

@@ -169,8 +169,8 @@ def _height_at(view: _View, place: np.ndarray) -> float:
 
 
 def _bad_start(view: _View, place: np.ndarray, problem: str, hint: str) -> SpecError:
-    x, y = view.to_world(place)
-    return SpecError(f"{view.name} start", (round(float(x), 2), round(float(y), 2)), "", hint, problem=problem)
+    x, y = (round(value, 2) + 0.0 for value in view.to_world(place).tolist())  # + 0.0: never "-0.0"
+    return SpecError(f"{view.name} start", (x, y), "", hint, problem=problem)
 
 
 def _completed(z: np.ndarray, covered: np.ndarray) -> np.ndarray:
