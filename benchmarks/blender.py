@@ -1,22 +1,31 @@
 """Blender's share: `python -m benchmarks.blender` prints how long enabling the add-on and baking take.
 
 Needs Blender's Python module. Enabling is timed in new processes, in turn with an empty extension, and the difference
-counts; a run of ten seconds is baked at 60 frames a second onto a skier that is there already.
+counts; a run of ten seconds is baked at 60 frames a second onto a skier that is there already, beside the same number
+of keys written into curves by Blender alone.
 """
 
 from __future__ import annotations
 
+import importlib.util
+import json
 import os
 import subprocess
 import sys
 import tempfile
-import time
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+from benchmarks.measuring import ROOT, How, Measurement, NotMeasuredError, Samples, in_turn
+
+SUBJECT = "bake"
 ROUNDS = 7
+TIMEOUT = 300.0
+"""Seconds for a Blender that bakes."""
 MANIFEST = """schema_version = "1.0.0"
 id = "empty"
 version = "0.1.0"
@@ -58,8 +67,8 @@ def enabling(name: str, folder: Path) -> float:
     return float(done.stdout.split("SECONDS")[1].split()[0])
 
 
-def baking() -> tuple[float, int]:
-    """Return how long the bake of a run takes [s], and its number of frames."""
+def bake_work() -> tuple[Callable[[], Any], Callable[[], Any], int, int]:
+    """Return what bakes a run again, what writes as many keys plainly, the number of frames and that of keys."""
     import bpy
 
     from ski_addon.blender.bake import bake_recording
@@ -72,13 +81,75 @@ def baking() -> tuple[float, int]:
     scene.render.fps = RATE
     spec = RunSpec()
     recording = synthetic_motion(build_skeleton(spec.skier), spec, duration=BAKE_SECONDS)
-    armature = bake_recording(recording, scene).armature
-    seconds = []
-    for _ in range(ROUNDS):
-        begin = time.perf_counter()
-        result = bake_recording(recording, scene, armature=armature)
-        seconds.append(time.perf_counter() - begin)
-    return float(np.median(seconds)), int(result.frame_last - result.frame_first + 1)
+    result = bake_recording(recording, scene)
+    armature, slot = result.armature, result.armature.animation_data.action_slot
+    curves = result.action.layers[0].strips[0].channelbag(slot).fcurves
+    count, frames = len(curves), int(result.frame_last - result.frame_first + 1)
+    return (
+        lambda: bake_recording(recording, scene, armature=armature),
+        plain_keys(count, frames),
+        frames,
+        count * frames,
+    )
+
+
+def plain_keys(count: int, frames: int) -> Callable[[], Any]:
+    """Return what writes `count` curves of `frames` keys each into a new action, as quickly as Blender lets us."""
+    import bpy
+
+    keys = np.empty((frames, 2), dtype=np.float32)
+    keys[:, 0] = np.arange(frames)
+    keys[:, 1] = np.sin(keys[:, 0])
+    flat = keys.ravel()
+
+    def write() -> None:
+        action = bpy.data.actions.new("plain")
+        bag = (
+            action.layers.new("Layer")
+            .strips.new(type="KEYFRAME")
+            .channelbag(action.slots.new(id_type="OBJECT", name="plain"), ensure=True)
+        )
+        for index in range(count):
+            curve = bag.fcurves.new("location", index=index)
+            curve.keyframe_points.add(frames)
+            curve.keyframe_points.foreach_set("co", flat)
+            curve.update()
+        bpy.data.actions.remove(action)
+
+    return write
+
+
+def baked(rounds: int) -> tuple[dict[str, Samples], int, int]:
+    """Return the samples of `bake` and of `plain` keys, the number of frames and that of keys."""
+    bake, plain, frames, keys = bake_work()
+    return in_turn({"bake": bake, "plain": plain}, rounds), frames, keys
+
+
+def bake_rows(rounds: int) -> list[Measurement]:
+    """Return the rows of a bake; runs in Blender's Python."""
+    samples, frames, keys = baked(rounds)
+    ours, theirs = samples["bake"], samples["plain"]
+    more = {"peer": "foreach_set alone", "peer_ratio": ours.over(theirs)}
+    return [
+        ours.row(SUBJECT, f"a key, of {keys}", "us", 1.0 / keys, **more),
+        ours.row(SUBJECT, f"a frame, of {frames}", "us", 1.0 / frames, **more),
+    ]
+
+
+def measurements(how: How) -> list[Measurement]:
+    """Return the rows of a bake, made in a Python of its own: Blender's module may hang when Python shuts down."""
+    if importlib.util.find_spec("bpy") is None:
+        raise NotMeasuredError("there is no bpy here")
+    command = [sys.executable, "-m", "benchmarks.blender", "--rows", str(how.rounds(ROUNDS, 4))]
+    try:
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=TIMEOUT, check=False)
+    except subprocess.TimeoutExpired:
+        raise NotMeasuredError(f"Blender did not end within {TIMEOUT:.0f} s") from None
+    lines = [line for line in done.stdout.splitlines() if line.startswith("ROWS ")]
+    if not lines:
+        last = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
+        raise RuntimeError(f"Blender ended with code {done.returncode}: {last}")
+    return [Measurement(**row) for row in json.loads(lines[-1][5:])]
 
 
 def main() -> None:
@@ -90,11 +161,16 @@ def main() -> None:
     empty, ours = 1e3 * np.median(pairs, axis=0)
     more = 1e3 * float(np.median(pairs[:, 1] - pairs[:, 0]))
     print(f"enabling: {ours:.0f} ms, an empty one {empty:.0f} ms, more {more:.0f} ms")
-    seconds, frames = baking()
+    samples, frames, keys = baked(ROUNDS)
+    seconds, plain = (float(np.median(samples[name].all)) for name in ("bake", "plain"))
     print(f"bake: {frames} frames of a run of {BAKE_SECONDS:g} s at {RATE} fps in {seconds:.2f} s")
-    sys.stdout.flush()
-    os._exit(0)  # Blender's module may hang when Python shuts down
+    print(f"{1e6 * seconds / keys:.2f} us for each of {keys} keys; Blender alone {1e6 * plain / keys:.2f} us")
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:2] == ["--rows"]:
+        print("ROWS", json.dumps([asdict(row) for row in bake_rows(int(sys.argv[2]))]))
+    else:
+        main()
+    sys.stdout.flush()
+    os._exit(0)  # Blender's module may hang when Python shuts down

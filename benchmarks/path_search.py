@@ -8,12 +8,13 @@ states, and every example is replanned after an obstacle has been moved.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from benchmarks.measuring import CALIBRATION_ROUNDS, How, Measurement, Samples, Spent, calibration, spent
 from ski_addon.course.drawn_points import distinct_points
 from ski_addon.course.follow_problem import follow_problem
 from ski_addon.spec import RunSpec, find_document
@@ -21,6 +22,7 @@ from ski_addon.terrain import build_terrain
 from ski_addon.turning.body import TurningBody
 from ski_addon.turning.following import Bodies, Followed, Plan, Problem, best_plan, follow, plain
 
+SUBJECT = "path"
 EXAMPLES = ("tree_skiing", "slalom_by_planning", "corner", "potholes")
 RATES = (0.2, 0.3, 0.4)
 """Bounds of the rate of curvature [1/m/s] that the plain reading may choose from."""
@@ -38,27 +40,31 @@ def example(name: str, stages: int = 10) -> Problem:
 
 @dataclass(frozen=True)
 class Run:
-    """How a path was followed: what came of it, and the time of each plan [s] with the state it began from."""
+    """How a path was followed: what came of it, and what each plan took with the state it began from."""
 
     followed: Followed
-    seconds: np.ndarray
+    took: list[Spent]
     states: list[tuple[Bodies, Plan | None]]
+
+    @property
+    def seconds(self) -> np.ndarray:
+        """Wall time of each plan (n,) [s]."""
+        return np.array([one.wall for one in self.took])
 
 
 def timed(problem: Problem, planner: Callable[[Problem, Bodies, Plan | None], Plan]) -> Run:
     """Follow the path of `problem` with a planner and a stop-watch."""
-    seconds: list[float] = []
+    took: list[Spent] = []
     states: list[tuple[Bodies, Plan | None]] = []
 
     def watched(problem: Problem, now: Bodies, before: Plan | None) -> Plan:
-        begin = time.perf_counter()
-        plan = planner(problem, now, before)
-        seconds.append(time.perf_counter() - begin)
+        plan, one = spent(lambda: planner(problem, now, before))
+        took.append(one)
         states.append((now, before))
         return plan
 
     followed = follow(problem, planner=watched)
-    return Run(followed, np.array(seconds), states)
+    return Run(followed, took, states)
 
 
 def with_rate(problem: Problem, rate: float) -> Problem:
@@ -102,9 +108,8 @@ def replans(problem: Problem, run: Run) -> tuple[float, int, int]:
             continue
         for aside in MOVES:
             other = moved(problem, before, aside)
-            begin = time.perf_counter()
-            plan = best_plan(other, now, before)
-            seconds.append(time.perf_counter() - begin)
+            plan, one = spent(partial(best_plan, other, now, before))
+            seconds.append(one.wall)
             complete += plan.complete
     return float(np.median(seconds)), len(seconds), complete
 
@@ -119,6 +124,22 @@ def from_same_states(problem: Problem, ours: Run) -> tuple[float, float, int, in
             one, other, count = one + mine.cost, other + theirs.cost, count + 1
             cheaper += mine.cost <= theirs.cost + 1e-9
     return one, other, cheaper, count
+
+
+def measurements(how: How) -> list[Measurement]:
+    """Return the rows of following paths, a plan each; the peer is a plain reading of the paper's search, in turn."""
+    rows = []
+    for name in EXAMPLES[: how.rounds(2, 1)]:
+        problem, ours, theirs = example(name), Samples(), Samples()
+        for _ in range(how.rounds(2, 1)):
+            before = calibration(CALIBRATION_ROUNDS)
+            run = timed(problem, best_plan)
+            ours.add_spent(run.took, 0.5 * (before + calibration(CALIBRATION_ROUNDS)))
+            if not how.quick:
+                theirs.add_spent(timed(with_rate(problem, RATES[0]), plain).took, calibration(CALIBRATION_ROUNDS))
+        more = {} if how.quick else {"peer": "plain search", "peer_ratio": ours.over(theirs)}
+        rows.append(ours.row(SUBJECT, f"a plan of {name.replace('_', ' ')}", "ms", **more))
+    return rows
 
 
 def main() -> None:

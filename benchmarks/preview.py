@@ -10,13 +10,13 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from benchmarks.step import calibration
+from benchmarks.measuring import RUNS, How, Measurement, calibration, in_turn, spent
 from ski_addon.course import build_track
 from ski_addon.planning import as_planned
 from ski_addon.spec import RunSpec
@@ -28,7 +28,7 @@ from ski_addon.turning.pace import Pace
 from ski_addon.turning.preview import preview_track
 from ski_addon.turning.steering import Start, Steered, Targets, steer
 
-PRESETS = Path(__file__).resolve().parents[1] / "presets" / "runs"
+SUBJECT = "preview"
 TRACKS = ("giant_slalom", "slalom", "rolling_slalom", "moguls", "snowboard_carving", "telemark_turns", "bicycle_slalom")
 DURATION, COUNT, FPS = 10.0, 1000, 24.0
 SLOPE = Pace(9.66, 1.70, friction=0.071, friction_per_speed=0.004, drag=0.005)
@@ -37,24 +37,29 @@ SLOPE = Pace(9.66, 1.70, friction=0.071, friction_per_speed=0.004, drag=0.005)
 
 def median(function: Callable[[], Any], rounds: int) -> float:
     """Return the median time of a call [ms]."""
-    times = []
-    for _ in range(rounds):
-        begin = perf_counter()
-        function()
-        times.append(perf_counter() - begin)
-    return 1e3 * float(np.median(times))
+    return 1e3 * float(np.median([spent(function)[1].wall for _ in range(rounds)]))
 
 
-def along_track(name: str, rounds: int) -> tuple[float, float]:
-    """Return the times [ms] of 10 s of preview of a shipped run, whose track is given, and of its figure's poses."""
-    spec = as_planned(RunSpec.from_toml(PRESETS / f"{name}.toml"))
+@dataclass(frozen=True)
+class AlongTrack:
+    """Work on a shipped run whose track is given: its motion, its figure's poses, and how much of it is 10 s."""
+
+    move: Callable[[], Any]
+    pose: Callable[[], Any]
+    share: float
+
+
+def along_track(name: str) -> AlongTrack:
+    """Return what there is to time of a shipped run."""
+    spec = as_planned(RunSpec.from_toml(RUNS / f"{name}.toml"))
     terrain = build_terrain(spec.slope)
     track = build_track(spec, terrain)
     motion, figure = preview_track(spec, track, terrain), build_figure(spec)
-    share = DURATION / motion.duration
-    moved = median(lambda: preview_track(spec, track, terrain), rounds)
-    posed = median(lambda: figure_poses(figure, spec, motion, FPS), rounds)
-    return share * moved, share * posed
+    return AlongTrack(
+        lambda: preview_track(spec, track, terrain),
+        lambda: figure_poses(figure, spec, motion, FPS),
+        DURATION / motion.duration,
+    )
 
 
 def swings(count: int, step: float, seed: int = 1) -> tuple[Targets, Start]:
@@ -76,6 +81,21 @@ def swing_many(count: int, step: float) -> tuple[Steered, Any]:
     return run, motions_on_slope(TurningBody(), run, SLOPE)
 
 
+def measurements(how: How) -> list[Measurement]:
+    """Return the rows of previews with poses; figures by phase control have no poses yet."""
+    rows = []
+    for name in TRACKS[: how.rounds(len(TRACKS), 1)]:
+        run = along_track(name)
+        found = in_turn({"motion": run.move, "poses": run.pose}, how.rounds(9, 7))
+        label = name.replace("_", " ")
+        rows += [samples.row(SUBJECT, f"{label}: {part}, 10 s", "ms", run.share) for part, samples in found.items()]
+    swing_many(2, 0.05)
+    found = in_turn({"one figure by rhythm, 10 s": lambda: swing_many(1, 0.01)}, how.rounds(9, 7))
+    if not how.quick:
+        found |= in_turn({f"{COUNT} figures by rhythm, 10 s": lambda: swing_many(COUNT, 0.02)}, 4)
+    return rows + [samples.row(SUBJECT, name, "ms") for name, samples in found.items()]
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -86,7 +106,8 @@ def main() -> None:
     found = {"calibration_us": 1e6 * calibration()}
     print(f"calibration loop                 {found['calibration_us']:8.1f} us")
     for name in TRACKS:
-        moved, posed = along_track(name, arguments.rounds)
+        run = along_track(name)
+        moved, posed = (run.share * median(work, arguments.rounds) for work in (run.move, run.pose))
         found |= {f"track_{name}_ms": moved, f"poses_{name}_ms": posed}
         print(f"one figure along {name:<19}{moved:5.1f} ms for 10 s, and {posed:4.1f} ms for its poses")
     found["rhythm_ms"] = median(lambda: swing_many(1, 0.01), arguments.rounds)

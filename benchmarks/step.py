@@ -1,7 +1,8 @@
 """Microseconds of a simulation step by stage: `python -m benchmarks.step [SPEC] [--steps N] [--json FILE]`.
 
 Times are wall times of one thread. Machines differ and are shared, so a calibration loop (small matrix products and
-plain Python, like the step itself) is timed in the same run; compare ratios to it, not microseconds.
+plain Python, like the step itself) is timed in the same run; compare ratios to it, not microseconds. `python -m
+benchmarks --only step` measures the step beside its peers, and its allocations.
 """
 
 from __future__ import annotations
@@ -16,11 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.measuring import RUNS, calibration, percentiles
 from ski_addon.pipeline import make_plan, start_simulation
 from ski_addon.simulation import Simulation
 from ski_addon.spec import RunSpec
 
-PRESET = Path(__file__).resolve().parents[1] / "presets" / "runs" / "paper_main.toml"
+PRESET = RUNS / "paper_main.toml"
 STAGES = (
     ("reference look-up", "reference", "at"),
     ("MuJoCo and dynamics", "dynamics", "update"),
@@ -46,7 +48,23 @@ STAGES = (
     ("integrate", "dynamics", "integrate"),
     ("record", "_recorder", "add"),
 )
-"""Stage name, object within the simulation, method."""
+"""Stage name, object within the simulation, method. One that is not there is left out of the table."""
+
+Wrapper = Callable[[str, Callable[..., Any]], Callable[..., Any]]
+
+
+def hook_stages(simulation: Simulation, wrap: Wrapper) -> set[str]:
+    """Replace the method of every stage of `simulation` by `wrap(stage, method)`; return the stages that are there."""
+    found = set()
+    for stage, path, method in STAGES:
+        owner: Any = simulation
+        for part in path.split("."):
+            owner = getattr(owner, part, None)
+        function = getattr(owner, method, None)
+        if function is not None:
+            setattr(owner, method, wrap(stage, function))
+            found.add(stage)
+    return found
 
 
 class StageTimer:
@@ -56,11 +74,7 @@ class StageTimer:
         """Wrap every stage of `simulation`."""
         self.step: dict[str, float] = defaultdict(float)
         self._depth = 0
-        for stage, path, method in STAGES:
-            owner: Any = simulation
-            for part in path.split("."):
-                owner = getattr(owner, part)
-            setattr(owner, method, self._timed(stage, getattr(owner, method)))
+        self.stages = hook_stages(simulation, self._timed)
 
     def _timed(self, stage: str, function: Callable[..., Any]) -> Callable[..., Any]:
         def timed(*args: Any) -> Any:
@@ -74,20 +88,6 @@ class StageTimer:
                     self.step[stage] += perf_counter() - begin
 
         return timed
-
-
-def calibration(rounds: int = 2000) -> float:
-    """Return the median seconds of a fixed loop of numpy and Python work."""
-    matrix = np.random.default_rng(0).standard_normal((37, 37))
-    times = []
-    for _ in range(rounds):
-        begin = perf_counter()
-        product = matrix @ matrix
-        total = 0.0
-        for value in product[0].tolist():
-            total += value * value
-        times.append(perf_counter() - begin)
-    return float(np.median(times))
 
 
 def measure(spec: RunSpec, steps: int, warm_up: int = 200) -> dict[str, Any]:
@@ -112,9 +112,9 @@ def measure(spec: RunSpec, steps: int, warm_up: int = 200) -> dict[str, Any]:
         if index >= warm_up:
             for stage, seconds in timer.step.items():
                 rows[stage].append(seconds * 1e6)
-    stages = {name: _percentiles(np.array(values)) for name, values in rows.items()}
+    stages = {name: percentiles(values) for name, values in rows.items()}
     calibrated = calibration() * 1e6
-    total = _percentiles(whole)
+    total = percentiles(whole)
     return {
         "steps": len(whole),
         "stages_us": stages,
@@ -123,10 +123,6 @@ def measure(spec: RunSpec, steps: int, warm_up: int = 200) -> dict[str, Any]:
         "calibration_us": calibrated,
         "step_over_calibration": total["median"] / calibrated,
     }
-
-
-def _percentiles(values: np.ndarray) -> dict[str, float]:
-    return {"median": float(np.median(values)), "p99": float(np.percentile(values, 99))}
 
 
 def table(result: dict[str, Any]) -> str:

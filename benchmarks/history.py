@@ -1,0 +1,132 @@
+"""The history: ratios to the calibration loop, an entry a line in `benchmarks/history.jsonl`, so that a change shows.
+
+An entry is `date`, `commit` (short), `cpu`, `python`, `numpy`, `quick` (fewer rounds), `ratios` by key and a `note`.
+What is measured is compared with the last one from the same kind of processor, or, without one, with the last of all.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+import platform
+import re
+import subprocess
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.measuring import ROOT, Measurement
+from benchmarks.table import WORSE
+
+FILE = ROOT / "benchmarks" / "history.jsonl"
+
+
+class HistoryError(Exception):
+    """The history cannot be read; the text is one line that says where and what to do."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What was measured once: where, with what, and the ratios to the calibration loop by key."""
+
+    date: str
+    commit: str
+    cpu: str
+    python: str
+    numpy: str
+    quick: bool
+    ratios: dict[str, float]
+    note: str = ""
+
+    @property
+    def title(self) -> str:
+        """One line that names the entry."""
+        return f"{self.date}, {self.commit}, {self.cpu}, Python {self.python}, numpy {self.numpy}"
+
+
+def read(path: Path = FILE) -> list[Entry]:
+    """Return all entries, oldest first; raises `HistoryError`. A file that is not there has none."""
+    if not path.exists():
+        return []
+    entries = []
+    for index, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if text.strip():
+            try:
+                entries.append(_entry(json.loads(text)))
+            except (ValueError, TypeError, AttributeError) as problem:
+                reason = " ".join(str(problem).split())[:80]
+                hint = "mend or remove that line"
+                raise HistoryError(f"{path}, line {index}: it is no entry of a history ({reason}); {hint}") from None
+    return entries
+
+
+def _entry(document: dict[str, Any]) -> Entry:
+    entry = Entry(**document)
+    return Entry(**{**asdict(entry), "ratios": {str(key): float(value) for key, value in entry.ratios.items()}})
+
+
+def record(rows: Sequence[Measurement], quick: bool, path: Path = FILE, note: str = "") -> Entry:
+    """Append an entry of `rows` to the history and return it; raises `HistoryError` for a history that is damaged."""
+    read(path)
+    entry = Entry(
+        datetime.date.today().isoformat(),
+        commit(),
+        cpu(),
+        platform.python_version(),
+        np.__version__,
+        quick,
+        {row.key: float(f"{row.ratio:.4g}") for row in rows if row.ratio is not None},
+        note,
+    )
+    with path.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(asdict(entry), ensure_ascii=False) + "\n")
+    return entry
+
+
+def last(entries: Sequence[Entry], processor: str) -> Entry | None:
+    """Return the last entry of a kind of processor, or else the last of all, or None."""
+    same = [entry for entry in entries if entry.cpu == processor]
+    return (same or list(entries) or [None])[-1]
+
+
+def worse(rows: Sequence[Measurement], before: Entry | None) -> list[tuple[Measurement, float]]:
+    """Return the checked rows whose ratio is more than `WORSE` times that of `before`, with that factor."""
+    found = []
+    for row in rows:
+        old = before.ratios.get(row.key) if before else None
+        if old and row.checked and row.ratio is not None and row.ratio > WORSE * old:
+            found.append((row, row.ratio / old))
+    return found
+
+
+def better_of(rows: Sequence[Measurement], again: Sequence[Measurement]) -> list[Measurement]:
+    """Return `rows` with those that were measured again at a lower ratio replaced."""
+    new = {row.key: row for row in again}
+    return [_lower(row, new.get(row.key)) for row in rows]
+
+
+def _lower(row: Measurement, other: Measurement | None) -> Measurement:
+    if other is None or other.ratio is None or row.ratio is None:
+        return row
+    return other if other.ratio < row.ratio else row
+
+
+def commit() -> str:
+    """Return the short hash of what is checked out, with a + if files differ from it; "unknown" without git."""
+    try:
+        command = ["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"]
+        short = subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+        changed = subprocess.run(["git", "-C", str(ROOT), "diff", "--quiet", "HEAD"], check=False).returncode != 0
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return short + ("+" if changed else "")
+
+
+def cpu() -> str:
+    """Return the kind of processor, not whose it is."""
+    info = Path("/proc/cpuinfo")
+    found = re.search(r"^model name\s*:\s*(.+)$", info.read_text(), re.MULTILINE) if info.exists() else None
+    return found.group(1).strip() if found else platform.processor() or platform.machine()

@@ -1,0 +1,54 @@
+"""The table: one line a measurement, by subject, in at most 116 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+
+from benchmarks.measuring import Measurement
+
+COLUMNS = ("median", "p99", "n", "x loop", "change", "objects", "KiB")
+WIDTHS = (9, 9, 6, 8, 7, 8, 7)
+NAME, UNIT, PEER = 32, 5, 17
+WORSE = 1.5
+"""A ratio to the calibration loop that is so much the last one's is a failure."""
+
+
+def table(rows: Sequence[Measurement], before: Mapping[str, float] | None = None) -> str:
+    """Return the table of `rows`; `change` is the ratio to the loop by the one `before` of the same key."""
+    before = before or {}
+    head = [f"{'':{NAME}}{'unit':{UNIT}}"] + [
+        f"{column:>{width}}" for column, width in zip(COLUMNS, WIDTHS, strict=True)
+    ]
+    lines = ["".join(head) + f"  {'peer':{PEER}}{'x peer':>7}"]
+    lines.append("-" * len(lines[0]))
+    for subject, group in groupby(rows, key=lambda row: row.subject):
+        lines.append(subject)
+        lines += [line(row, before.get(row.key)) for row in group]
+    return "\n".join(lines)
+
+
+def line(row: Measurement, before: float | None = None) -> str:
+    """Return one line of the table."""
+    change = row.ratio / before if row.ratio is not None and before else None
+    cells = (
+        number(row.median),
+        number(row.p99),
+        str(row.n),
+        number(row.ratio),
+        "" if change is None else f"{change:.2f}" + ("!" if row.checked and change > WORSE else " "),
+        number(row.objects),
+        number(row.kib),
+    )
+    text = f"{'  ' + row.name:{NAME}.{NAME}}{row.unit:{UNIT}}"
+    text += "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
+    beside = "" if row.peer_ratio is None else f"{row.peer_ratio:.2f}"
+    return f"{text}  {row.peer:{PEER}.{PEER}}{beside:>7}".rstrip()
+
+
+def number(value: float | None) -> str:
+    """Return a number with three or four figures, without an exponent; nothing for None."""
+    if value is None:
+        return ""
+    size = abs(value)
+    return f"{value:.0f}" if size >= 1000 or size == 0 else f"{value:.1f}" if size >= 10 else f"{value:.2f}"
