@@ -80,7 +80,7 @@ def bake_work() -> tuple[Callable[[], Any], Callable[[], Any], int, int]:
     scene = bpy.context.scene
     scene.render.fps = RATE
     spec = RunSpec()
-    recording = synthetic_motion(build_skeleton(spec.skier), spec, duration=BAKE_SECONDS)
+    recording: Any = synthetic_motion(build_skeleton(spec.skier), spec, duration=BAKE_SECONDS)
     result = bake_recording(recording, scene)
     armature, slot = result.armature, result.armature.animation_data.action_slot
     curves = result.action.layers[0].strips[0].channelbag(slot).fcurves

@@ -89,7 +89,8 @@ def record(rows: Sequence[Measurement], quick: bool, path: Path = FILE, note: st
 def last(entries: Sequence[Entry], processor: str) -> Entry | None:
     """Return the last entry of a kind of processor, or else the last of all, or None."""
     same = [entry for entry in entries if entry.cpu == processor]
-    return (same or list(entries) or [None])[-1]
+    found = same or list(entries)
+    return found[-1] if found else None
 
 
 def worse(rows: Sequence[Measurement], before: Entry | None) -> list[tuple[Measurement, float]]:

@@ -12,7 +12,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from benchmarks.measuring import ROOT, RUNS, Measurement, NotMeasuredError, calibration
 
@@ -60,7 +62,7 @@ def total(text: str) -> int:
 def rows(nothing: int, steps: int, loops: int) -> list[Measurement]:
     """Return the rows from what the three had counted."""
     step, loop = (steps - nothing) / STEPS, (loops - nothing) / LOOPS
-    more = {"unit": "k", "checked": False}
+    more: dict[str, Any] = {"unit": "k", "checked": False}
     return [
         Measurement("instructions", "a step", median=step / 1e3, p99=step / 1e3, n=STEPS, ratio=step / loop, **more),
         Measurement("instructions", "a calibration loop", median=loop / 1e3, p99=loop / 1e3, n=LOOPS, **more),
@@ -76,7 +78,11 @@ def main(folder: Path) -> None:
     simulation = start_simulation(planned)
     simulation.advance(WARM_UP)
     calibration(10)
-    work = {"nothing": int, "steps": lambda: simulation.advance(STEPS), "loops": lambda: calibration(LOOPS)}
+    work: dict[str, Callable[[], Any]] = {
+        "nothing": int,
+        "steps": lambda: simulation.advance(STEPS),
+        "loops": lambda: calibration(LOOPS),
+    }
     for part in PARTS:
         process = os.fork()
         if process == 0:

@@ -7,7 +7,7 @@ by other programs have their ratios from the processor's time that they took, no
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter, process_time
@@ -172,7 +172,7 @@ class Samples:
         return Measurement(subject, name, unit, median, low, self.all.size, self.ratio, **more)
 
 
-def in_turn(functions: dict[str, Callable[[], Any]], rounds: int) -> dict[str, Samples]:
+def in_turn(functions: Mapping[str, Callable[[], Any]], rounds: int) -> dict[str, Samples]:
     """Time functions in turn, with the calibration loop before and after each; return their samples by name."""
     samples = {name: Samples() for name in functions}
     before = calibration(CALIBRATION_ROUNDS)

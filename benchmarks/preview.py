@@ -113,8 +113,8 @@ def main() -> None:
     found["rhythm_ms"] = median(lambda: swing_many(1, 0.01), arguments.rounds)
     print(f"one figure by phase control      {found['rhythm_ms']:8.1f} ms for 10 s")
     found["thousand_ms"] = median(lambda: swing_many(COUNT, 0.02), max(arguments.rounds // 2, 3))
-    run, _ = swing_many(COUNT, 0.02)
-    rode = int(np.sum(run.ended == 0))
+    steered, _ = swing_many(COUNT, 0.02)
+    rode = int(np.sum(steered.ended == 0))
     print(f"{COUNT} figures by phase control   {found['thousand_ms']:8.1f} ms for 10 s, {rode} of them to the end")
     if arguments.json:
         arguments.json.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

@@ -6,6 +6,10 @@ where ours makes two, for the states before and after, and a slerp between them.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
 import numpy as np
 
 from benchmarks.measuring import How, Measurement, in_turn
@@ -23,12 +27,12 @@ def measurements(how: How) -> list[Measurement]:
     """Return the rows of resampling ten seconds at each rate."""
     spec = RunSpec()
     skeleton, model = build_skeleton(spec.skier), build_skier_model(spec.skier)
-    recording = synthetic_motion(skeleton, spec, duration=DURATION)
-    functions = {}
+    recording: Any = synthetic_motion(skeleton, spec, duration=DURATION)
+    functions: dict[str, Callable[[], Any]] = {}
     for rate in RATES:
         states = recording.qpos[:: round(1000 / rate)]
-        functions[f"10 s at {rate} fps"] = lambda rate=rate: sample_body_poses(recording, skeleton, rate)
-        functions[f"peer {rate}"] = lambda states=states: kinematics(model, states)
+        functions[f"10 s at {rate} fps"] = partial(sample_body_poses, recording, skeleton, rate)
+        functions[f"peer {rate}"] = partial(kinematics, model, states)
     samples = in_turn(functions, how.rounds(25, 9))
     rows = []
     for rate in RATES:

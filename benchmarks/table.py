@@ -36,7 +36,7 @@ def line(row: Measurement, before: float | None = None) -> str:
         number(row.p99),
         str(row.n),
         number(row.ratio),
-        "" if change is None else f"{change:.2f}" + ("!" if row.checked and change > WORSE else " "),
+        "" if change is None else number(change) + ("!" if row.checked and change > WORSE else " "),
         number(row.objects),
         number(row.kib),
     )
@@ -47,8 +47,8 @@ def line(row: Measurement, before: float | None = None) -> str:
 
 
 def number(value: float | None) -> str:
-    """Return a number with three or four figures, without an exponent; nothing for None."""
+    """Return a number with three figures or more, without an exponent; nothing for None."""
     if value is None:
         return ""
     size = abs(value)
-    return f"{value:.0f}" if size >= 1000 or size == 0 else f"{value:.1f}" if size >= 10 else f"{value:.2f}"
+    return f"{value:.0f}" if size >= 99.95 or size == 0 else f"{value:.1f}" if size >= 9.995 else f"{value:.2f}"

@@ -86,7 +86,7 @@ def test_no_fitting_python_is_one_line_that_says_what_to_install() -> None:
     assert "needs Python 3.98 or 3.99" in done.stderr
 
 
-@pytest.mark.parametrize("target", ["env", "test", "demo", "build", "build-dev", "lint", "types", "clean"])
+@pytest.mark.parametrize("target", ["env", "test", "demo", "build", "build-dev", "lint", "types", "benchmark", "clean"])
 def test_make_target_exists(target: str) -> None:
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
 
