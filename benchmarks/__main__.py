@@ -15,10 +15,10 @@ from pathlib import Path
 
 from benchmarks import history
 from benchmarks.instructions import instruction_rows
-from benchmarks.measuring import How, Measurement, NotMeasuredError, calibration
+from benchmarks.measuring import WORSE, How, Measurement, NotMeasuredError, calibration
 from benchmarks.peers import VARIABLE, find_peers
 from benchmarks.subjects import SUBJECTS, chosen, measure
-from benchmarks.table import WORSE, table
+from benchmarks.table import table
 
 TRIES = 3
 """How often subjects with a worse ratio are measured again before that is believed."""

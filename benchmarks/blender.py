@@ -131,8 +131,8 @@ def bake_rows(rounds: int) -> list[Measurement]:
     ours, theirs = samples["bake"], samples["plain"]
     more = {"peer": "foreach_set alone", "peer_ratio": ours.over(theirs)}
     return [
-        ours.row(SUBJECT, f"a key, of {keys}", "us", 1.0 / keys, **more),
-        ours.row(SUBJECT, f"a frame, of {frames}", "us", 1.0 / frames, **more),
+        ours.row(SUBJECT, f"a key of {keys}", "us", 1.0 / keys, **more),
+        ours.row(SUBJECT, f"a frame of {frames}", "us", 1.0 / frames, **more),
     ]
 
 

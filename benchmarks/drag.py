@@ -75,7 +75,7 @@ def measurements(how: How) -> list[Measurement]:
             samples.add_spent(series, 0.5 * (before + calibration(CALIBRATION_ROUNDS)))
         whole = in_turn({"whole": partial(preview_course, steps[0], terrain)}, 3)["whole"]
         ratio = samples.ratio / whole.ratio
-        label = f"a gate of {name.replace('_', ' ')}"
+        label = name.replace("_", " ")
         rows.append(samples.row(SUBJECT, label, "ms", peer="whole preview", peer_ratio=ratio))
     return rows
 

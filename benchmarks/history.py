@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 from benchmarks.measuring import ROOT, Measurement
-from benchmarks.table import WORSE
 
 FILE = ROOT / "benchmarks" / "history.jsonl"
 
@@ -94,13 +93,9 @@ def last(entries: Sequence[Entry], processor: str) -> Entry | None:
 
 
 def worse(rows: Sequence[Measurement], before: Entry | None) -> list[tuple[Measurement, float]]:
-    """Return the checked rows whose ratio is more than `WORSE` times that of `before`, with that factor."""
-    found = []
-    for row in rows:
-        old = before.ratios.get(row.key) if before else None
-        if old and row.checked and row.ratio is not None and row.ratio > WORSE * old:
-            found.append((row, row.ratio / old))
-    return found
+    """Return the rows that are worse than those of `before`, each with the factor."""
+    ratios = before.ratios if before else {}
+    return [(row, row.change(ratios[row.key]) or 0.0) for row in rows if row.worse(ratios.get(row.key))]
 
 
 def better_of(rows: Sequence[Measurement], again: Sequence[Measurement]) -> list[Measurement]:

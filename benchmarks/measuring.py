@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 RUNS = ROOT / "presets" / "runs"
 UNITS = {"us": 1e6, "ms": 1e3, "s": 1.0}
+WORSE = 1.5
+"""A ratio to the calibration loop that is so much the last one's is a failure."""
+SHORTEST = 3.0
+"""What takes fewer loops than this never fails: timing takes as long."""
 CALIBRATION_ROUNDS = 150
 """Passes of the calibration loop between two measured calls: about a millisecond."""
 
@@ -74,6 +78,15 @@ class Measurement:
     def key(self) -> str:
         """Name in the history."""
         return f"{self.subject}/{self.name}"
+
+    def change(self, before: float | None) -> float | None:
+        """Return the ratio by an earlier one; None if one of them is not known."""
+        return self.ratio / before if self.ratio is not None and before else None
+
+    def worse(self, before: float | None) -> bool:
+        """Return whether the ratio is so much more than an earlier one that it is a failure."""
+        change = self.change(before)
+        return self.checked and change is not None and change > WORSE and (self.ratio or 0.0) > SHORTEST
 
 
 @dataclass

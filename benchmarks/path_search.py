@@ -153,7 +153,7 @@ def measurements(how: How) -> list[Measurement]:
         if not how.quick:
             ours, theirs = beside_plain(problem, run)
             more = {"peer": "plain search", "peer_ratio": ours.over(theirs)}
-        rows.append(samples.row(SUBJECT, f"a plan of {name.replace('_', ' ')}", "ms", **more))
+        rows.append(samples.row(SUBJECT, name.replace("_", " "), "ms", **more))
     return rows
 
 

@@ -41,9 +41,9 @@ STAGES = {
 }
 """What does the work of a stage of ours alone."""
 OTHERS = (
-    Entry("placo", ("6d/limits=True", "time"), "placo, 6D contacts, limits"),
-    Entry("paper", ("piqp", "total"), "the paper's stack re-made, PIQP"),
-    Entry("floor", ("mj_step (Euler, no contact)",), "MuJoCo alone, no control"),
+    Entry("placo", ("6d/limits=True", "time"), "placo, with limits"),
+    Entry("paper", ("piqp_sparse/nc=40", "total"), "the paper's stack"),
+    Entry("floor", ("mj_step (Euler, no contact)",), "mj_step alone"),
 )
 
 

@@ -64,5 +64,5 @@ def measurements(how: How) -> list[Measurement]:
             for part, of_part in timer.took.items():
                 parts[part].add_spent([of_part], 0.5 * (before + after))
             before = after
-    rows = [whole.row(SUBJECT, "make_plan, 10 s course", "ms", share)]
+    rows = [whole.row(SUBJECT, "make_plan", "ms", share)]
     return rows + [samples.row(SUBJECT, part, "ms", share) for part, samples in parts.items() if samples.seconds]

@@ -88,11 +88,11 @@ def measurements(how: How) -> list[Measurement]:
         run = along_track(name)
         found = in_turn({"motion": run.move, "poses": run.pose}, how.rounds(9, 7))
         label = name.replace("_", " ")
-        rows += [samples.row(SUBJECT, f"{label}: {part}, 10 s", "ms", run.share) for part, samples in found.items()]
+        rows += [samples.row(SUBJECT, f"{label}: {part}", "ms", run.share) for part, samples in found.items()]
     swing_many(2, 0.05)
-    found = in_turn({"one figure by rhythm, 10 s": lambda: swing_many(1, 0.01)}, how.rounds(9, 7))
+    found = in_turn({"one figure by rhythm": lambda: swing_many(1, 0.01)}, how.rounds(9, 7))
     if not how.quick:
-        found |= in_turn({f"{COUNT} figures by rhythm, 10 s": lambda: swing_many(COUNT, 0.02)}, 4)
+        found |= in_turn({f"{COUNT} figures by rhythm": lambda: swing_many(COUNT, 0.02)}, 4)
     return rows + [samples.row(SUBJECT, name, "ms") for name, samples in found.items()]
 
 

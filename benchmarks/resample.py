@@ -31,14 +31,14 @@ def measurements(how: How) -> list[Measurement]:
     functions: dict[str, Callable[[], Any]] = {}
     for rate in RATES:
         states = recording.qpos[:: round(1000 / rate)]
-        functions[f"10 s at {rate} fps"] = partial(sample_body_poses, recording, skeleton, rate)
+        functions[f"at {rate} fps"] = partial(sample_body_poses, recording, skeleton, rate)
         functions[f"peer {rate}"] = partial(kinematics, model, states)
     samples = in_turn(functions, how.rounds(25, 9))
     rows = []
     for rate in RATES:
-        mine = samples[f"10 s at {rate} fps"]
+        mine = samples[f"at {rate} fps"]
         ratio = mine.over(samples[f"peer {rate}"])
-        row = mine.row(SUBJECT, f"10 s at {rate} fps", "ms", peer="mj_kinematics", peer_ratio=ratio)
+        row = mine.row(SUBJECT, f"at {rate} fps", "ms", peer="mj_kinematics", peer_ratio=ratio)
         rows.append(row)
     return rows
 

@@ -1,4 +1,7 @@
-"""The step by stage, in turn with its peers: peer, ours, peer, ours, ... peer, so that both meet the same machine."""
+"""The step by stage, in turn with TSID's: TSID, ours, TSID, ours, ... TSID, so that both meet the same machine.
+
+The other peers are run before all of it and after.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,6 @@ SUBJECT = "step"
 CHUNK = 50
 """Steps between two looks at the calibration loop."""
 WARM_UP = 200
-SHORTEST = 2.0
-"""Stages of fewer calibration loops than this are not checked: the timers take as long."""
 
 
 class Steps:
@@ -76,14 +77,13 @@ class Beside:
     def __init__(self, how: How) -> None:
         self._how, self._peers = how, how.peers
         self._failed: set[str] = set()
-        self._latest: dict[str, dict] = {}
         self.figures: dict[Entry, list[Figure]] = defaultdict(list)
 
-    def run(self) -> None:
-        """Run every peer once."""
+    def run(self, *entries: Entry) -> None:
+        """Run the scripts of `entries` once."""
         if self._peers is None:
             return
-        for script in dict.fromkeys(entry.script for entry in (STEP, *OTHERS)):
+        for script in dict.fromkeys(entry.script for entry in entries):
             self._run(self._peers, script)
 
     def figure(self, entry: Entry) -> Figure | None:
@@ -95,11 +95,14 @@ class Beside:
         return Figure(float(median), float(p99), sum(one.n for one in found))
 
     def ratio(self, entry: Entry, ours: list[float]) -> float | None:
-        """Return the median over the rounds of ours [us] by the mean of the peer's before and after."""
-        theirs = [one.median for one in self.figures.get(entry, [])]
-        if len(theirs) != len(ours) + 1:
-            return None
-        return float(np.median(np.array(ours) / (0.5 * (np.array(theirs[:-1]) + np.array(theirs[1:])))))
+        """Return the median over the rounds of ours [us] by the mean of the peer's before and after.
+
+        A peer that was not run between the rounds has the median of ours by the mean of its own.
+        """
+        theirs = np.array([one.median for one in self.figures.get(entry, [])])
+        if len(theirs) == len(ours) + 1:
+            return float(np.median(np.array(ours) / (0.5 * (theirs[:-1] + theirs[1:]))))
+        return float(np.median(ours) / theirs.mean()) if len(theirs) else None
 
     def _run(self, peers: Peers, script: str) -> None:
         if script in self._failed:
@@ -127,15 +130,16 @@ def measurements(how: How) -> list[Measurement]:
     planned = make_plan(RunSpec.from_toml(PRESET))
     steps, beside = Steps(planned), Beside(how)
     ours: dict[str, list[float]] = defaultdict(list)
-    beside.run()
-    for _ in range(how.rounds(2, 1)):
+    beside.run(*OTHERS, STEP)
+    for _ in range(how.rounds(4, 1)):
         before = {stage: len(samples.seconds) for stage, samples in steps.stages.items()}
-        mine = steps.chunks(how.rounds(50, 16))
+        mine = steps.chunks(how.rounds(25, 16))
         ours[WHOLE].append(1e6 * float(np.median(mine.all)))
         for stage, samples in steps.stages.items():
             new = np.concatenate(samples.seconds[before.get(stage, 0) :] or [np.zeros(1)])
             ours[stage].append(1e6 * float(np.median(new)))
-        beside.run()
+        beside.run(STEP)
+    beside.run(*OTHERS)
     allocated = {} if how.quick else step_allocations(planned)
     return _rows(steps, beside, ours, allocated)
 
@@ -149,7 +153,6 @@ def _rows(
         entry = STEP if row.name == WHOLE else STAGES.get(row.name)
         if entry and (ratio := beside.ratio(entry, ours[row.name])) is not None:
             row = replace(row, peer=entry.label, peer_ratio=ratio)
-        row = replace(row, checked=row.name == WHOLE or (row.ratio or 0.0) > SHORTEST)
         if row.name in allocated:
             row = replace(row, objects=allocated[row.name].objects, kib=allocated[row.name].kib)
         rows[index] = row

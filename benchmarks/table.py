@@ -10,8 +10,19 @@ from benchmarks.measuring import Measurement
 COLUMNS = ("median", "p99", "n", "x loop", "change", "objects", "KiB")
 WIDTHS = (9, 9, 6, 8, 7, 8, 7)
 NAME, UNIT, PEER = 32, 5, 17
-WORSE = 1.5
-"""A ratio to the calibration loop that is so much the last one's is a failure."""
+TITLES = {
+    "step": "step of the paper's main case, by stage",
+    "plan": "plan of 10 s of turns, and its parts",
+    "preview": "preview of 10 s",
+    "drag": "drag of a gate, the preview after it",
+    "path": "path search, a plan past obstacles",
+    "resample": "resample of a recording of 10 s",
+    "bake": "bake of 10 s at 60 fps",
+    "files": "files of a recording of 10 s",
+    "crowd": "crowd",
+    "instructions": "instructions, in thousands",
+}
+"""Headings of the subjects."""
 
 
 def table(rows: Sequence[Measurement], before: Mapping[str, float] | None = None) -> str:
@@ -23,24 +34,24 @@ def table(rows: Sequence[Measurement], before: Mapping[str, float] | None = None
     lines = ["".join(head) + f"  {'peer':{PEER}}{'x peer':>7}"]
     lines.append("-" * len(lines[0]))
     for subject, group in groupby(rows, key=lambda row: row.subject):
-        lines.append(subject)
+        lines.append(TITLES.get(subject, subject))
         lines += [line(row, before.get(row.key)) for row in group]
     return "\n".join(lines)
 
 
 def line(row: Measurement, before: float | None = None) -> str:
     """Return one line of the table."""
-    change = row.ratio / before if row.ratio is not None and before else None
+    change = row.change(before)
     cells = (
         number(row.median),
         number(row.p99),
         str(row.n),
         number(row.ratio),
-        "" if change is None else number(change) + ("!" if row.checked and change > WORSE else " "),
-        number(row.objects),
+        "" if change is None else number(change) + ("!" if row.worse(before) else " "),
+        "" if row.objects is None else f"{row.objects:.0f}",
         number(row.kib),
     )
-    text = f"{'  ' + row.name:{NAME}.{NAME}}{row.unit:{UNIT}}"
+    text = f"{'  ' + row.name:{NAME}.{NAME - 1}}{row.unit:{UNIT}}"
     text += "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
     beside = "" if row.peer_ratio is None else f"{row.peer_ratio:.2f}"
     return f"{text}  {row.peer:{PEER}.{PEER}}{beside:>7}".rstrip()

@@ -76,6 +76,11 @@ def test_only_checked_rows_that_are_half_again_as_slow_fail():
     assert worse(rows, ENTRY) == [(rows[0], pytest.approx(1.51))]
 
 
+def test_what_is_too_short_to_be_timed_never_fails():
+    short = replace(ENTRY, ratios={"step/solve": 1.0})
+    assert worse([row(2.9)], short) == [] and len(worse([row(3.1)], short)) == 1
+
+
 def test_a_second_try_counts_where_it_is_better():
     rows = [row(20.0), row(5.0, "build"), row(None, "a peer")]
     again = [row(11.0), row(6.0, "build"), row(3.0, "another")]

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from benchmarks.measuring import Measurement
-from benchmarks.table import line, number, table
+from benchmarks.table import TITLES, line, number, table
 
 WHOLE = Measurement("step", "whole step", "us", 123.4, 567.8, 4000, 25.5, 785, 27.55, "TSID", 0.71)
 ROWS = [
@@ -32,7 +32,7 @@ def test_columns_stand_below_their_names():
 
 def test_subjects_have_one_heading_each():
     lines = table(ROWS).splitlines()
-    assert [text for text in lines[2:] if not text.startswith(" ")] == ["step", "plan"]
+    assert [text for text in lines[2:] if not text.startswith(" ")] == [TITLES["step"], TITLES["plan"]]
 
 
 def test_no_line_is_wider_than_the_table_even_with_long_names():
