@@ -1,4 +1,4 @@
-"""Benchmarks: run one with `python -m benchmarks.step`.
+"""Benchmarks: `python -m benchmarks` runs all and prints one table.
 
 Importing this package keeps numeric libraries to one thread.
 """

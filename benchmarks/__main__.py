@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -15,10 +16,12 @@ from pathlib import Path
 
 from benchmarks import history
 from benchmarks.instructions import instruction_rows
-from benchmarks.measuring import WORSE, How, Measurement, NotMeasuredError, calibration
+from benchmarks.measuring import WORSE, WORSE_ELSEWHERE, How, Measurement, NotMeasuredError, calibration
 from benchmarks.peers import VARIABLE, find_peers
 from benchmarks.subjects import SUBJECTS, chosen, measure
 from benchmarks.table import table
+from ski_addon.atomic import write_text
+from ski_addon.errors import OutputError
 
 TRIES = 3
 """How often subjects with a worse ratio are measured again before that is believed."""
@@ -37,6 +40,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--record", action="store_true", help="append the ratios to the history")
     made.add_argument("--note", default="", help="a remark for the recorded entry")
     check = f"quick; exit with 1 if a ratio to the calibration loop stays above {WORSE} times the recorded one"
+    check += f" ({WORSE_ELSEWHERE} times if that is from another kind of processor)"
     made.add_argument("--check", action="store_true", help=check)
     return made
 
@@ -47,25 +51,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         names = chosen(asked.only)
         before = history.last(history.read(asked.history), history.cpu())
-    except (ValueError, history.HistoryError) as problem:
+        for path in (asked.json, asked.history if asked.record else None):
+            check_target(path)
+    except (ValueError, history.HistoryError, OutputError) as problem:
         print(problem, file=sys.stderr)
         return 2
     quick = asked.quick or asked.check
-    how = How(quick, find_peers() if asked.peers or (asked.peers is None and not quick) else None)
-    if asked.peers and how.peers is None:
-        how.notes.append(f"there is no folder of peers; {VARIABLE} may name one")
+    how = How(quick)
+    if asked.peers if asked.peers is not None else not quick and "step" in names:
+        add_peers(how)
     loop = 1e6 * calibration()
     rows = measure(names, how)
     if asked.check:
         rows = again(rows, before, how)
     if asked.instructions:
         rows += counted(how)
-    print(table(rows, before.ratios if before else None), *words(loop, before, how), sep="\n")
+    compared = (before.ratios, before.limit) if before else ()
+    print(table(rows, *compared), *words(loop, before, how), sep="\n")
     if asked.json:
         write_json(asked.json, rows, loop, how)
     if asked.record:
         history.record(rows, quick, asked.history, asked.note)
     return judged(rows, before) if asked.check else 0
+
+
+def add_peers(how: How) -> None:
+    """Have other people's control steps run beside ours, or note that they are not there."""
+    how.peers = find_peers()
+    if how.peers is None:
+        how.notes.append(f"no other people's control steps: there is no folder of them; {VARIABLE} may name one")
 
 
 def again(rows: list[Measurement], before: history.Entry | None, how: How) -> list[Measurement]:
@@ -93,6 +107,8 @@ def words(loop: float, before: history.Entry | None, how: How) -> list[str]:
     compared = f"change: x loop by that of {before.title}" if before else "there is no history to compare with yet"
     if before and before.cpu != history.cpu():
         compared += f"; this processor is another: {history.cpu()}"
+    if before and before.limit != WORSE:
+        compared += f"; here {before.limit:g} times is a failure"
     return ["", f"calibration loop: {loop:.2f} us; x loop: time by that loop's around it", compared, *how.notes]
 
 
@@ -106,7 +122,17 @@ def write_json(path: Path, rows: list[Measurement], loop: float, how: How) -> No
         "notes": how.notes,
         "measurements": [asdict(row) for row in rows],
     }
-    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_text(path, json.dumps(document, indent=1, ensure_ascii=False) + "\n")
+
+
+def check_target(path: Path | None) -> None:
+    """Raise `OutputError` for a file that could not be written in the end, before minutes are spent on it."""
+    if path is None:
+        return
+    if path.is_dir():
+        raise OutputError(path, "it is a folder")
+    if not os.access(path.parent, os.W_OK):
+        raise OutputError(path, "its folder is not there or cannot be written to")
 
 
 def judged(rows: list[Measurement], before: history.Entry | None) -> int:

@@ -56,8 +56,8 @@ def measurements(how: How) -> list[Measurement]:
     rows = []
     for way in ("write", "read"):
         ratio = samples[way].wall_over(samples[f"{way} raw"])
-        beside = {"peer": "the bytes raw", "peer_ratio": ratio}
+        beside = {"peer": "raw bytes", "peer_ratio": ratio}
         rows.append(samples[way].rate_row(SUBJECT, way, "MB/s", megabytes, checked=False, **beside))
-        raw_row = samples[f"{way} raw"].rate_row(SUBJECT, f"  peer: the bytes raw, {way}", "MB/s", megabytes)
+        raw_row = samples[f"{way} raw"].rate_row(SUBJECT, f"  peer: raw bytes, {way}", "MB/s", megabytes)
         rows.append(replace(raw_row, ratio=None, checked=False))
     return rows

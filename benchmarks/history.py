@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.measuring import ROOT, Measurement
+from benchmarks.measuring import ROOT, WORSE, WORSE_ELSEWHERE, Measurement
+from ski_addon.atomic import write_text
 
 FILE = ROOT / "benchmarks" / "history.jsonl"
 
@@ -45,13 +46,23 @@ class Entry:
         """One line that names the entry."""
         return f"{self.date}, {self.commit}, {self.cpu}, Python {self.python}, numpy {self.numpy}"
 
+    @property
+    def limit(self) -> float:
+        """By how much a ratio measured here and now may exceed this entry's."""
+        alike = self.cpu == cpu() and self.python.split(".")[:2] == platform.python_version().split(".")[:2]
+        return WORSE if alike else WORSE_ELSEWHERE
+
 
 def read(path: Path = FILE) -> list[Entry]:
     """Return all entries, oldest first; raises `HistoryError`. A file that is not there has none."""
     if not path.exists():
         return []
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as problem:
+        raise HistoryError(f"{path}: it cannot be read ({getattr(problem, 'strerror', None) or problem})") from None
     entries = []
-    for index, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+    for index, text in enumerate(lines, 1):
         if text.strip():
             try:
                 entries.append(_entry(json.loads(text)))
@@ -68,7 +79,10 @@ def _entry(document: dict[str, Any]) -> Entry:
 
 
 def record(rows: Sequence[Measurement], quick: bool, path: Path = FILE, note: str = "") -> Entry:
-    """Append an entry of `rows` to the history and return it; raises `HistoryError` for a history that is damaged."""
+    """Append an entry of `rows` to the history and return it.
+
+    Raises `HistoryError` for a history that is damaged, `OutputError` where it cannot be written: it stays as it was.
+    """
     read(path)
     entry = Entry(
         datetime.date.today().isoformat(),
@@ -80,8 +94,8 @@ def record(rows: Sequence[Measurement], quick: bool, path: Path = FILE, note: st
         {row.key: float(f"{row.ratio:.4g}") for row in rows if row.ratio is not None},
         note,
     )
-    with path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(asdict(entry), ensure_ascii=False) + "\n")
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    write_text(path, "\n".join([*lines, json.dumps(asdict(entry), ensure_ascii=False)]) + "\n")
     return entry
 
 
@@ -94,8 +108,10 @@ def last(entries: Sequence[Entry], processor: str) -> Entry | None:
 
 def worse(rows: Sequence[Measurement], before: Entry | None) -> list[tuple[Measurement, float]]:
     """Return the rows that are worse than those of `before`, each with the factor."""
-    ratios = before.ratios if before else {}
-    return [(row, row.change(ratios[row.key]) or 0.0) for row in rows if row.worse(ratios.get(row.key))]
+    if before is None:
+        return []
+    ratios, limit = before.ratios, before.limit
+    return [(row, row.change(ratios[row.key]) or 0.0) for row in rows if row.worse(ratios.get(row.key), limit)]
 
 
 def better_of(rows: Sequence[Measurement], again: Sequence[Measurement]) -> list[Measurement]:

@@ -23,6 +23,8 @@ RUNS = ROOT / "presets" / "runs"
 UNITS = {"us": 1e6, "ms": 1e3, "s": 1.0}
 WORSE = 1.5
 """A ratio to the calibration loop that is so much the last one's is a failure."""
+WORSE_ELSEWHERE = 3.0
+"""The same where the last one is from another kind of processor or another Python, which alone change ratios."""
 SHORTEST = 3.0
 """What takes fewer loops than this never fails: timing takes as long."""
 CALIBRATION_ROUNDS = 150
@@ -58,7 +60,8 @@ class Measurement:
 
     `median` and `p99` of `n` samples in `unit`; `ratio` of the time to the calibration loop's in the same run (larger
     is slower, None for what is no time of ours). `objects` and `kib`: what is newly allocated. `peer` is what does the
-    same work, `peer_ratio` our time by the peer's. `checked`: whether a worse ratio is a failure.
+    same work, `peer_ratio` our time by the peer's and `peer_p99` our p99 by its. `checked`: whether a worse ratio is a
+    failure.
     """
 
     subject: str
@@ -72,6 +75,7 @@ class Measurement:
     kib: float | None = None
     peer: str = ""
     peer_ratio: float | None = None
+    peer_p99: float | None = None
     checked: bool = True
 
     @property
@@ -83,10 +87,10 @@ class Measurement:
         """Return the ratio by an earlier one; None if one of them is not known."""
         return self.ratio / before if self.ratio is not None and before else None
 
-    def worse(self, before: float | None) -> bool:
-        """Return whether the ratio is so much more than an earlier one that it is a failure."""
+    def worse(self, before: float | None, limit: float = WORSE) -> bool:
+        """Return whether the ratio is more than `limit` times an earlier one, which is a failure."""
         change = self.change(before)
-        return self.checked and change is not None and change > WORSE and (self.ratio or 0.0) > SHORTEST
+        return self.checked and change is not None and change > limit and (self.ratio or 0.0) > SHORTEST
 
 
 @dataclass

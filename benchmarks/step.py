@@ -47,8 +47,14 @@ STAGES = (
     ("forward dynamics", "dynamics", "accelerations"),
     ("integrate", "dynamics", "integrate"),
     ("record", "_recorder", "add"),
+    ("record", "_log", "add"),
 )
-"""Stage name, object within the simulation, method. One that is not there is left out of the table."""
+"""Stage name, object within the simulation, method.
+
+One that is not there, or is never called, is left out of the table; what it did is part of its caller or of the rest.
+"""
+REST = "everything else"
+"""The step without its stages: what no stage names, and the timers themselves."""
 
 Wrapper = Callable[[str, Callable[..., Any]], Callable[..., Any]]
 
@@ -73,15 +79,30 @@ class StageTimer:
     def __init__(self, simulation: Simulation) -> None:
         """Wrap every stage of `simulation`."""
         self.step: dict[str, float] = defaultdict(float)
-        self._depth = 0
+        self._simulation, self._depth = simulation, 0
         self.stages = hook_stages(simulation, self._timed)
 
+    def rows(self, steps: int) -> dict[str, list[float]]:
+        """Make up to so many steps; return the seconds of each by stage, 0 where it was not called, and of the rest."""
+        found: dict[str, list[float]] = {stage: [] for stage in (*self._order(), REST)}
+        for _ in range(steps):
+            self.step.clear()
+            if not self._simulation.advance(1):
+                break
+            for stage in self.stages:
+                found[stage].append(self.step[stage])
+            found[REST].append(self._simulation.step_seconds[-1] - sum(self.step.values()))
+        return found
+
+    def _order(self) -> list[str]:
+        return [stage for stage in dict.fromkeys(stage for stage, _, _ in STAGES) if stage in self.stages]
+
     def _timed(self, stage: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        def timed(*args: Any) -> Any:
+        def timed(*args: Any, **more: Any) -> Any:
             self._depth += 1
             begin = perf_counter()
             try:
-                return function(*args)
+                return function(*args, **more)
             finally:
                 self._depth -= 1
                 if self._depth == 0:
@@ -103,16 +124,9 @@ def measure(spec: RunSpec, steps: int, warm_up: int = 200) -> dict[str, Any]:
     plain.advance(warm_up + steps)
     whole = np.array(plain.step_seconds[warm_up:]) * 1e6
     staged = start_simulation(planned)
-    timer = StageTimer(staged)
-    rows: dict[str, list[float]] = defaultdict(list)
-    for index in range(warm_up + steps):
-        timer.step.clear()
-        if not staged.advance(1):
-            break
-        if index >= warm_up:
-            for stage, seconds in timer.step.items():
-                rows[stage].append(seconds * 1e6)
-    stages = {name: percentiles(values) for name, values in rows.items()}
+    staged.advance(warm_up)
+    rows = StageTimer(staged).rows(steps)
+    stages = {name: percentiles(1e6 * np.array(seconds)) for name, seconds in rows.items() if any(seconds)}
     calibrated = calibration() * 1e6
     total = percentiles(whole)
     return {

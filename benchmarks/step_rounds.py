@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +28,7 @@ WARM_UP = 200
 class Steps:
     """Two simulations of one plan, without and with timers, that go on by chunks of steps, and begin again at the end.
 
-    `whole` and `stages` gather the times: of steps without timers, and of each stage.
+    `whole` and `stages` gather the times: of steps without timers, and of each stage and the rest.
     """
 
     def __init__(self, planned: Planned) -> None:
@@ -45,7 +46,7 @@ class Steps:
                 self._begin()
             self._plain.advance(CHUNK)
             middle = calibration(CALIBRATION_ROUNDS)
-            rows = self._staged_chunk()
+            rows = self._timer.rows(CHUNK)
             after = calibration(CALIBRATION_ROUNDS)
             mine.add(self._plain.step_seconds[-CHUNK:], 0.5 * (before + middle))
             for stage, seconds in rows.items():
@@ -57,18 +58,9 @@ class Steps:
     def _begin(self) -> None:
         self._plain: Simulation = start_simulation(self._planned)
         self._staged = start_simulation(self._planned)
-        self._timer = StageTimer(self._staged)
         self._plain.advance(WARM_UP)
         self._staged.advance(WARM_UP)
-
-    def _staged_chunk(self) -> dict[str, list[float]]:
-        rows: dict[str, list[float]] = defaultdict(list)
-        for _ in range(CHUNK):
-            self._timer.step.clear()
-            self._staged.advance(1)
-            for stage, seconds in self._timer.step.items():
-                rows[stage].append(seconds)
-        return rows
+        self._timer = StageTimer(self._staged)
 
 
 class Beside:
@@ -103,6 +95,11 @@ class Beside:
         if len(theirs) == len(ours) + 1:
             return float(np.median(np.array(ours) / (0.5 * (theirs[:-1] + theirs[1:]))))
         return float(np.median(ours) / theirs.mean()) if len(theirs) else None
+
+    def p99_ratio(self, entry: Entry, ours: float) -> float | None:
+        """Return our p99 [us] by the median of the peer's."""
+        theirs = self.figure(entry)
+        return ours / theirs.p99 if theirs else None
 
     def _run(self, peers: Peers, script: str) -> None:
         if script in self._failed:
@@ -148,11 +145,12 @@ def _rows(
     steps: Steps, beside: Beside, ours: dict[str, list[float]], allocated: dict[str, Allocated]
 ) -> list[Measurement]:
     rows = [steps.whole.row(SUBJECT, WHOLE, "us")]
-    rows += [samples.row(SUBJECT, stage, "us") for stage, samples in steps.stages.items()]
+    called = {stage: samples for stage, samples in steps.stages.items() if samples.all.any()}
+    rows += [samples.row(SUBJECT, stage, "us", checked=False) for stage, samples in called.items()]
     for index, row in enumerate(rows):
         entry = STEP if row.name == WHOLE else STAGES.get(row.name)
         if entry and (ratio := beside.ratio(entry, ours[row.name])) is not None:
-            row = replace(row, peer=entry.label, peer_ratio=ratio)
+            row = replace(row, peer=entry.label, peer_ratio=ratio, peer_p99=beside.p99_ratio(entry, row.p99))
         if row.name in allocated:
             row = replace(row, objects=allocated[row.name].objects, kib=allocated[row.name].kib)
         rows[index] = row
@@ -160,8 +158,8 @@ def _rows(
         theirs = beside.figure(entry)
         if theirs is not None:
             ratio = beside.ratio(entry, ours[WHOLE])
+            tail = beside.p99_ratio(entry, rows[0].p99)
+            more: dict[str, Any] = {"peer_ratio": ratio, "peer_p99": tail, "checked": False}
             name = f"  peer: {entry.label}"
-            rows.append(
-                Measurement(SUBJECT, name, "us", theirs.median, theirs.p99, theirs.n, peer_ratio=ratio, checked=False)
-            )
+            rows.append(Measurement(SUBJECT, name, "us", theirs.median, theirs.p99, theirs.n, **more))
     return rows

@@ -21,7 +21,6 @@ SUBJECTS = {
     "resample": "benchmarks.resample",
     "bake": "benchmarks.blender",
     "files": "benchmarks.files",
-    "crowd": "benchmarks.crowd",
 }
 """Name on the command line, and module."""
 
@@ -51,13 +50,4 @@ def measure(names: Iterable[str], how: How) -> list[Measurement]:
 
 def subject(name: str, how: How) -> list[Measurement]:
     """Return the rows of one subject; raises `NotMeasuredError`."""
-    path = SUBJECTS[name]
-    try:
-        module = importlib.import_module(path)
-    except ModuleNotFoundError as problem:
-        if problem.name != path:
-            raise
-        raise NotMeasuredError(f"there is no {path}") from None
-    if not hasattr(module, "measurements"):
-        raise NotMeasuredError(f"{path} has no measurements(how)")
-    return module.measurements(how)
+    return importlib.import_module(SUBJECTS[name]).measurements(how)

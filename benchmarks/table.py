@@ -1,15 +1,15 @@
-"""The table: one line a measurement, by subject, in at most 116 columns."""
+"""The table: one line a measurement, by subject, in at most 119 columns."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
-from benchmarks.measuring import Measurement
+from benchmarks.measuring import WORSE, Measurement
 
 COLUMNS = ("median", "p99", "n", "x loop", "change", "objects", "KiB")
 WIDTHS = (9, 9, 6, 8, 7, 8, 7)
-NAME, UNIT, PEER = 32, 5, 17
+NAME, UNIT, PEER = 29, 5, 15
 TITLES = {
     "step": "step of the paper's main case, by stage",
     "plan": "plan of 10 s of turns, and its parts",
@@ -19,27 +19,29 @@ TITLES = {
     "resample": "resample of a recording of 10 s",
     "bake": "bake of 10 s at 60 fps",
     "files": "files of a recording of 10 s",
-    "crowd": "crowd",
     "instructions": "instructions, in thousands",
 }
 """Headings of the subjects."""
 
 
-def table(rows: Sequence[Measurement], before: Mapping[str, float] | None = None) -> str:
-    """Return the table of `rows`; `change` is the ratio to the loop by the one `before` of the same key."""
+def table(rows: Sequence[Measurement], before: Mapping[str, float] | None = None, limit: float = WORSE) -> str:
+    """Return the table of `rows`; `change` is the ratio to the loop by the one `before` of the same key.
+
+    Checked rows that are worse by more than `limit` are marked.
+    """
     before = before or {}
     head = [f"{'':{NAME}}{'unit':{UNIT}}"] + [
         f"{column:>{width}}" for column, width in zip(COLUMNS, WIDTHS, strict=True)
     ]
-    lines = ["".join(head) + f"  {'peer':{PEER}}{'x peer':>7}"]
+    lines = ["".join(head) + f"  {'peer':{PEER}}{'x peer':>7}{'p99 x':>7}"]
     lines.append("-" * len(lines[0]))
     for subject, group in groupby(rows, key=lambda row: row.subject):
         lines.append(TITLES.get(subject, subject))
-        lines += [line(row, before.get(row.key)) for row in group]
+        lines += [line(row, before.get(row.key), limit) for row in group]
     return "\n".join(lines)
 
 
-def line(row: Measurement, before: float | None = None) -> str:
+def line(row: Measurement, before: float | None = None, limit: float = WORSE) -> str:
     """Return one line of the table."""
     change = row.change(before)
     cells = (
@@ -47,14 +49,14 @@ def line(row: Measurement, before: float | None = None) -> str:
         number(row.p99),
         str(row.n),
         number(row.ratio),
-        "" if change is None else number(change) + ("!" if row.worse(before) else " "),
+        "" if change is None else number(change) + ("!" if row.worse(before, limit) else " "),
         "" if row.objects is None else f"{row.objects:.0f}",
         number(row.kib),
     )
     text = f"{'  ' + row.name:{NAME}.{NAME - 1}}{row.unit:{UNIT}}"
     text += "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
-    beside = "" if row.peer_ratio is None else f"{row.peer_ratio:.2f}"
-    return f"{text}  {row.peer:{PEER}.{PEER}}{beside:>7}".rstrip()
+    beside = "".join(f"{'' if ratio is None else f'{ratio:.2f}':>7}" for ratio in (row.peer_ratio, row.peer_p99))
+    return f"{text}  {row.peer:{PEER}.{PEER}}{beside}".rstrip()
 
 
 def number(value: float | None) -> str:

@@ -29,7 +29,7 @@ def ratios(monkeypatch):
         module = ModuleType(f"made_up_{name}")
         module.measurements = function
         monkeypatch.setitem(sys.modules, module.__name__, module)
-    table = {"fast": "made_up_fast", "absent": "made_up_absent", "lost": "benchmarks.no_such_subject"}
+    table = {"fast": "made_up_fast", "absent": "made_up_absent"}
     for name in list(subjects.SUBJECTS):
         monkeypatch.delitem(subjects.SUBJECTS, name)
     subjects.SUBJECTS.update(table)
@@ -47,7 +47,6 @@ def test_what_cannot_be_measured_leaves_a_line(ratios, tmp_path, capsys):
     assert run("--no-peers", "--history", tmp_path / "none.jsonl") == 0
     said = capsys.readouterr().out
     assert "all of it" in said and "absent was not measured: there is no snow here" in said
-    assert "lost was not measured: there is no benchmarks.no_such_subject" in said
     assert "there is no history" in said
 
 
@@ -102,11 +101,43 @@ def test_damaged_history_is_one_line_and_nothing_is_measured(ratios, tmp_path, c
 
 def test_unknown_subject_is_one_line(ratios, capsys):
     assert run("--only", "fast,snow") == 2
-    assert capsys.readouterr().err.strip() == "there is no subject 'snow'; there are fast, absent, lost"
+    assert capsys.readouterr().err.strip() == "there is no subject 'snow'; there are fast, absent"
 
 
 def test_peers_that_are_asked_for_and_missing_are_noted(ratios, tmp_path, monkeypatch, capsys):
     ratios.append(10.0)
     monkeypatch.setattr(command, "find_peers", lambda: None)
     run("--only", "fast", "--peers", "--history", tmp_path / "none.jsonl")
-    assert "there is no folder of peers" in capsys.readouterr().out
+    assert "there is no folder of them; SKI_ADDON_PEERS may name one" in capsys.readouterr().out
+
+
+def test_peers_that_are_missing_are_no_failure_and_not_noted_where_no_step_is_measured(
+    ratios, tmp_path, monkeypatch, capsys
+):
+    ratios.append(10.0)
+    monkeypatch.setattr(command, "find_peers", lambda: None)
+    assert run("--only", "fast", "--history", tmp_path / "none.jsonl") == 0
+    assert "there is no folder" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("option", ["--json", "--history"])
+@pytest.mark.parametrize("name", ["", "no/such/folder/file"])
+def test_file_that_cannot_be_written_is_one_line_before_anything_is_measured(ratios, tmp_path, capsys, option, name):
+    assert run("--only", "fast", "--record", "--history", tmp_path / "h.jsonl", option, tmp_path / name) == 2
+    caught = capsys.readouterr()
+    assert caught.out == "" and len(caught.err.splitlines()) == 1 and str(tmp_path) in caught.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_history_of_another_processor_is_said_and_allows_more(ratios, tmp_path, monkeypatch, capsys):
+    history = tmp_path / "history.jsonl"
+    ratios[:] = [10.0]
+    monkeypatch.setattr(command.history, "cpu", lambda: "Another CPU")
+    run("--only", "fast", "--record", "--history", history)
+    monkeypatch.setattr(command.history, "cpu", lambda: "Some CPU")
+    ratios[:] = [29.0]
+    assert run("--only", "fast", "--check", "--history", history) == 0
+    said = capsys.readouterr().out
+    assert "this processor is another: Some CPU; here 3 times is a failure" in said and "2.90!" not in said
+    ratios[:] = [31.0]
+    assert run("--only", "fast", "--check", "--history", history) == 1

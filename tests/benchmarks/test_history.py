@@ -10,8 +10,16 @@ import pytest
 from benchmarks import history
 from benchmarks.history import Entry, HistoryError, better_of, last, read, record, worse
 from benchmarks.measuring import Measurement
+from ski_addon.errors import OutputError
 
 ENTRY = Entry("2025-01-01", "abc1234", "Some CPU", "3.11.7", "1.26.4", True, {"step/solve": 10.0})
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """The machine of `ENTRY`."""
+    monkeypatch.setattr(history, "cpu", lambda: ENTRY.cpu)
+    monkeypatch.setattr(history.platform, "python_version", lambda: "3.11.9")
 
 
 def row(ratio: float | None, name: str = "solve", *, checked: bool = True) -> Measurement:
@@ -71,12 +79,41 @@ def test_the_last_entry_of_this_processor_counts_or_else_the_last_of_all():
     assert last([older, ENTRY, other], "A third CPU") is other
 
 
-def test_only_checked_rows_that_are_half_again_as_slow_fail():
+def test_only_checked_rows_that_are_half_again_as_slow_fail(here):
     rows = [row(15.1), row(14.9), row(99.0, checked=False), row(99.0, "new"), row(None)]
     assert worse(rows, ENTRY) == [(rows[0], pytest.approx(1.51))]
 
 
-def test_what_is_too_short_to_be_timed_never_fails():
+@pytest.mark.parametrize("other", [{"cpu": "Another CPU"}, {"python": "3.13.1"}])
+def test_another_processor_or_python_may_be_three_times_as_slow(here, other):
+    rows = [row(29.0), row(31.0)]
+    assert worse(rows, replace(ENTRY, **other)) == [(rows[1], pytest.approx(3.1))]
+
+
+def test_history_that_cannot_be_written_stays_as_it_was(tmp_path, monkeypatch):
+    path = tmp_path / "history.jsonl"
+    record([row(1.0)], True, path)
+    before = path.read_bytes()
+
+    def full(source, target):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", full)
+    with pytest.raises(OutputError, match="No space left"):
+        record([row(2.0)], True, path)
+    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("content", [None, b"\xff\xfe"])
+def test_history_that_is_no_text_is_one_line(tmp_path, content):
+    path = tmp_path / "history.jsonl"
+    path.mkdir() if content is None else path.write_bytes(content)
+    with pytest.raises(HistoryError, match="cannot be read") as caught:
+        read(path)
+    assert len(str(caught.value).splitlines()) == 1 and str(path) in str(caught.value)
+
+
+def test_what_is_too_short_to_be_timed_never_fails(here):
     short = replace(ENTRY, ratios={"step/solve": 1.0})
     assert worse([row(2.9)], short) == [] and len(worse([row(3.1)], short)) == 1
 

@@ -6,6 +6,7 @@ import pytest
 
 from benchmarks.measuring import How
 from benchmarks.peers import OTHERS, STAGES, STEP, VARIABLE, PeerError, Peers, figure, find_peers, parse
+from benchmarks.step import STAGES as STEP_STAGES
 from benchmarks.step_rounds import Beside
 
 LINE = '{"res": {"eiquadprog/6d": {"total": {"med_us": 200.0, "p99_us": 300.0, "n": 1900}}}}'
@@ -66,6 +67,7 @@ def test_broken_peer_is_noted_once_and_not_run_again(tmp_path):
     assert (tmp_path / "ran").read_text().split() == [word for script in scripts for word in ("ran", script)]
     assert len(how.notes) == len(scripts)
     assert beside.figure(STEP) is None and beside.ratio(STEP, [1.0]) is None
+    assert beside.p99_ratio(STEP, 1.0) is None
 
 
 def test_ratio_is_ours_by_the_peers_before_and_after(tmp_path):
@@ -75,6 +77,11 @@ def test_ratio_is_ours_by_the_peers_before_and_after(tmp_path):
     assert beside.ratio(STEP, [100.0, 300.0]) == pytest.approx(1.0)
     assert beside.figure(STEP).n == 3 * 1900
     assert beside.ratio(STEP, [100.0]) == pytest.approx(0.5)  # not in turn: by the mean
+    assert beside.p99_ratio(STEP, 150.0) == pytest.approx(0.5)
+
+
+def test_peers_of_stages_stand_beside_stages_that_there_are():
+    assert set(STAGES) <= {stage for stage, _, _ in STEP_STAGES}
 
 
 def test_every_figure_is_of_a_script_that_is_run():

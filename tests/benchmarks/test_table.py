@@ -9,7 +9,7 @@ import pytest
 from benchmarks.measuring import Measurement
 from benchmarks.table import TITLES, line, number, table
 
-WHOLE = Measurement("step", "whole step", "us", 123.4, 567.8, 4000, 25.5, 785, 27.55, "TSID", 0.71)
+WHOLE = Measurement("step", "whole step", "us", 123.4, 567.8, 4000, 25.5, 785, 27.55, "TSID", 0.71, 0.93)
 ROWS = [
     WHOLE,
     Measurement("step", "record", "us", 2, 4.0, 4000, 0.5),
@@ -25,6 +25,7 @@ def test_columns_stand_below_their_names():
         ("x loop", "25.5"),
         ("objects", "785"),
         ("x peer", "0.71"),
+        ("p99 x", "0.93"),
     ):
         end = lines[0].index(column) + len(column)
         assert lines[3][:end].endswith(cell)
@@ -37,7 +38,7 @@ def test_subjects_have_one_heading_each():
 
 def test_no_line_is_wider_than_the_table_even_with_long_names():
     long = Measurement(
-        "step", "n" * 80, "MB/s", 123456.0, 1234567.0, 123456, 1234567.0, 99999, 12345.6, "p" * 80, 1234.5
+        "step", "n" * 80, "MB/s", 123456.0, 1234567.0, 123456, 1234567.0, 99999, 12345.6, "p" * 80, 1234.5, 1234.5
     )
     lines = table([*ROWS, long], {long.key: 10.0}).splitlines()
     assert all(len(text) <= len(lines[1]) for text in lines) and len(lines[1]) <= 120
