@@ -140,5 +140,18 @@ def commit() -> str:
 def cpu() -> str:
     """Return the kind of processor, not whose it is."""
     info = Path("/proc/cpuinfo")
-    found = re.search(r"^model name\s*:\s*(.+)$", info.read_text(), re.MULTILINE) if info.exists() else None
-    return found.group(1).strip() if found else platform.processor() or platform.machine()
+    found = cpu_kind(info.read_text()) if info.exists() else ""
+    return found or platform.processor() or platform.machine()
+
+
+def cpu_kind(info: str) -> str:
+    """Return the name, family, model and width of vectors in the text of /proc/cpuinfo; "" where there is no name.
+
+    The name alone is that of many generations, and what the loop of matrix products takes depends on the vectors.
+    """
+    fields = {
+        key: re.search(rf"^{key}\s*:\s*(.+)$", info, re.MULTILINE) for key in ("model name", "cpu family", "model")
+    }
+    name, family, model = (found.group(1).strip() if found else "" for found in fields.values())
+    wide = ", AVX-512" if re.search(r"^flags\s*:.*\bavx512f\b", info, re.MULTILINE) else ""
+    return f"{name} (family {family}, model {model}{wide})" if name and family and model else name

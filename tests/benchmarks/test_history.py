@@ -42,6 +42,13 @@ def test_entry_names_the_processor_and_not_the_host(tmp_path):
     assert entry.cpu and platform.node() not in json.dumps(asdict(entry))
 
 
+def test_kind_of_processor_tells_generations_apart():
+    text = "cpu family\t: 25\nmodel\t\t: 1\nmodel name\t: AMD EPYC\nflags\t\t: fpu avx2\n"
+    assert history.cpu_kind(text) == "AMD EPYC (family 25, model 1)"
+    assert history.cpu_kind(text.replace("avx2", "avx2 avx512f sha")) == "AMD EPYC (family 25, model 1, AVX-512)"
+    assert history.cpu_kind("model name : Some ARM\n") == "Some ARM" and history.cpu_kind("") == ""
+
+
 def test_no_history_has_no_entries(tmp_path):
     assert read(tmp_path / "none.jsonl") == [] and last([], "Some CPU") is None
     assert worse([row(99.0)], None) == []
