@@ -150,7 +150,8 @@ def _rows(
     for index, row in enumerate(rows):
         entry = STEP if row.name == WHOLE else STAGES.get(row.name)
         if entry and (ratio := beside.ratio(entry, ours[row.name])) is not None:
-            row = replace(row, peer=entry.label, peer_ratio=ratio, peer_p99=beside.p99_ratio(entry, row.p99))
+            tail = beside.p99_ratio(entry, row.p99) if row.name == WHOLE else None
+            row = replace(row, peer=entry.label, peer_ratio=ratio, peer_p99=tail)
         if row.name in allocated:
             row = replace(row, objects=allocated[row.name].objects, kib=allocated[row.name].kib)
         rows[index] = row

@@ -55,7 +55,7 @@ def line(row: Measurement, before: float | None = None, limit: float = WORSE) ->
     )
     text = f"{'  ' + row.name:{NAME}.{NAME - 1}}{row.unit:{UNIT}}"
     text += "".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS, strict=True))
-    beside = "".join(f"{'' if ratio is None else f'{ratio:.2f}':>7}" for ratio in (row.peer_ratio, row.peer_p99))
+    beside = "".join(f"{number(ratio):>7}" for ratio in (row.peer_ratio, row.peer_p99))
     return f"{text}  {row.peer:{PEER}.{PEER}}{beside}".rstrip()
 
 
