@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..simulation.recording import Recording
 
 FOLDER = "ski_cache"
-_OWN = re.compile(r"_[0-9a-f]{16}\.npz$")
+_OWN = r"_[0-9a-f]{16}\.npz$"
 KEPT = 10
 """Recordings of files that were never saved that are kept in the user's cache, newest first."""
 
@@ -82,7 +82,7 @@ def user_cache() -> Path:
 
 def _forget_old(folder: Path) -> None:
     """Remove the oldest recordings; the folder may be one where the user keeps other files, and slopes lie there."""
-    own = [path for path in folder.glob("*.npz") if _OWN.search(path.name)]
+    own = [path for path in folder.glob("*.npz") if re.search(_OWN, path.name)]
     recordings = sorted(own, key=lambda path: path.stat().st_mtime, reverse=True)
     for path in recordings[KEPT:]:
         path.unlink(missing_ok=True)

@@ -13,6 +13,7 @@ from ..errors import SkiAddonError
 from ..frames import Array
 from ..gravity import STANDARD_GRAVITY
 from ..spec import RunSpec
+from ..spec.records import record
 from . import changes
 from .course_objects import standing_gates
 from .jobs import RUNNING
@@ -43,7 +44,7 @@ DELAY = 0.01
 _log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Numbered:
     """A gate's number: where it stands (3,) [m, world] and whether it is a red one."""
 
@@ -52,7 +53,7 @@ class Numbered:
     is_red: bool
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Preview:
     """What is drawn of a run: `line` (n, 3) [m, world] with its colours (n, 4), gates' numbers, the `problem` in one
     line with the place (3,) it is at, or None; what the figure is made from; and `ground` (2 k, 3) [m, world], the ends

@@ -5,24 +5,23 @@ from __future__ import annotations
 import contextlib
 import json
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..errors import MissingInputError, SpecError, show_path
+from .records import record
 
 SIZE_MAX = 1_000_000
 """A run document larger than this [bytes] is not one."""
 WANTED = "give a run document, for instance one of presets/runs"
-_MANY_DOTS = re.compile(r"""(?<![\w"'-])(?:["']?[\w-]++["']?\.){30}""")
+_MANY_DOTS = r"""(?<![\w"'-])(?:["']?[\w-]++["']?\.){30}"""
 """A key of more than 30 parts: reading thousands of them would take Python's reader minutes."""
-_HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")
-_WRITTEN = re.compile(r"\s*([\w.-]+)\s*=")
+_HEADER = r"\s*(\[\[?)\s*([\w.-]+)\s*\]"
+_WRITTEN = r"\s*([\w.-]+)\s*="
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SourceDocument:
     """A TOML document: the name of its source, its text and the nested tables in it."""
 
@@ -62,7 +61,9 @@ def read_text(path: Path) -> str:
 
 def parse_document(text: str, source: str) -> SourceDocument:
     """Parse TOML text; raises `SpecError` naming the source and the line if it is not TOML."""
-    if _MANY_DOTS.search(text):
+    import tomllib
+
+    if re.search(_MANY_DOTS, text):
         raise SpecError(show_path(source), problem="has a key of more than 30 parts", hint=WANTED)
     try:
         return SourceDocument(source, text, tomllib.loads(text))
@@ -93,11 +94,11 @@ def find_line(text: str, key: str) -> int | None:
     section, _, name = key.rpartition(".")
     here = ""
     for count, line in enumerate(text.split("\n"), start=1):
-        header = _HEADER.match(line)
+        header = re.match(_HEADER, line)
         here = header[2] if header else here
         if header and key in (f"[{here}]", here):
             return count
-        written = _WRITTEN.match(line)
+        written = re.match(_WRITTEN, line)
         if written and written.group(1) in ((name,) if here == section else (key,)):
             return count
     return None
@@ -107,12 +108,12 @@ def _find_row_line(text: str, rows: str, number: int, name: str) -> int | None:
     """Return the line of `name`, or else of the header, in the row `[[rows]]` of that number (from 1)."""
     found, head, inside = 0, None, False
     for count, line in enumerate(text.split("\n"), start=1):
-        header = _HEADER.match(line)
+        header = re.match(_HEADER, line)
         if header:
             found += header[1] == "[[" and header[2] == rows
             inside = header[1] == "[[" and header[2] == rows and found == number
             head = count if inside else head
-        written = _WRITTEN.match(line)
+        written = re.match(_WRITTEN, line)
         if inside and written and written[1] == name:
             return count
     return head

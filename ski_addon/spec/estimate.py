@@ -5,11 +5,11 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .bump_defaults import PAST_LAST, bump_crests
 from .gate_defaults import MARGIN, gate_defaults, usual_run_in
+from .records import record
 from .rhythm_defaults import rhythm_duration
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ SIMULATED_MAX = 3600.0
 """A run of more skiing than this [s] is not started without being told to."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Estimate:
     """Simulated time [s], physics steps, memory of the recording [bytes] and waiting time [s] of a run."""
 

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import functools
 import re
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any
+
+from .records import record
 
 NUMBER, WHOLE, FLAG, CHOICE, TEXT = "number", "whole", "flag", "choice", "text"
 PLACES, ROWS = "places", "rows"
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class FieldInfo:
     """One key of a run document.
 

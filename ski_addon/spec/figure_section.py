@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from .fields import choice, flag, number
+from .records import record
 
 KINDS = ("alpine", "snowboard", "telemark", "bicycle")
 _SKIS, _POLES, _LEGS = ("alpine", "telemark"), ("alpine", "telemark"), ("alpine", "snowboard", "telemark")
 _BOARD, _TELEMARK, _BICYCLE = ("snowboard",), ("telemark",), ("bicycle",)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class FigureSpec:
     """Who turns, and in which style; the preview shows every kind, the whole physics is for alpine skiers."""
 

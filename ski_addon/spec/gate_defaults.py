@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from .records import record
 from .sections import CourseSpec
 
 SLALOM_SPACING_MAX = 15.0
@@ -13,7 +12,7 @@ MARGIN = 1.5
 """A line bends to its first gate, and away from its last, over this many times the distance from gate to gate."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class GateDefaults:
     """Usual spacing down the slope, offset sideways and clearance of the middle between the skis [m]."""
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from .fields import number, text, whole
+from .records import record
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SimulationSpec:
     """How the physics is stepped."""
 
@@ -16,7 +15,7 @@ class SimulationSpec:
     seed: int = whole(0, 0, 2**31 - 1, "", "Seed", "Seed of every random number", advanced=True)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class BakeSpec:
     """How the motion becomes keyframes."""
 

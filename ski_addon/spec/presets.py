@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import MissingInputError
 from .document import parse_document, read_text
+from .records import record
 
 PART_KINDS = ("courses", "skiers", "snow", "styles")
 """Folders of parts, documents of some sections (and rows) to lay over a run with `RunSpec.with_part`."""
@@ -16,7 +15,7 @@ PRESET_KINDS = ("runs", *PART_KINDS)
 """Folders of presets: whole runs, and parts."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Preset:
     """One preset: its folder, the name of its file, its path, and the name and description in it."""
 
@@ -83,6 +82,8 @@ def find_document(name: str, kinds: tuple[str, ...] = ("runs",)) -> Path:
         raise MissingInputError(name, f"there are several presets of that name: say {' or '.join(clashes)}")
     if os.path.exists(path):
         return path
+    import difflib
+
     near = difflib.get_close_matches(name[:100], known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"presets are {', '.join(sorted(k for k in known if '/' not in k))}"
     raise MissingInputError(name, f"there is no such file or preset: {hint}")

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..errors import SpecError, show_value
 from .fields import FieldInfo
+from .records import record
 from .table import row_kinds
 
 if TYPE_CHECKING:
     from .run_spec import RunSpec
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class RowPlace:
     """One value in a row: the field of the rows, the number of the row (from 1) and the field within it."""
 
@@ -128,4 +127,6 @@ def _read_row(info: FieldInfo, number: int, value: object) -> Any:
 
 
 def _nearest(info: FieldInfo, name: str) -> str:
+    import difflib
+
     return difflib.get_close_matches(name[:100], [field.name for field in info.row_fields], n=1, cutoff=0.0)[0]

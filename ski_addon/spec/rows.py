@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from .fields import choice, number, places, text
+from .records import record
 
 BODIES = (
     *("pelvis", "abdomen", "chest", "head"),
@@ -17,7 +17,7 @@ DIRECTIONS = ("left", "right", "forward", "back", "up", "down")
 """Directions of a push in the frame of the track: tangent, left within the surface, surface normal."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class RhythmSpec:
     """What a rhythm is like at one time; between rows it changes evenly. Write `[[rhythm]]` above each."""
 
@@ -51,7 +51,7 @@ class RhythmSpec:
     )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class GateSpec:
     """A gate the skier passes, measured from the start of the track; write `[[gate]]` above each."""
 
@@ -80,7 +80,7 @@ class GateSpec:
     )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class PointSpec:
     """A corner of a drawn path, measured from the start of the track; write `[[point]]` above each."""
 
@@ -90,7 +90,7 @@ class PointSpec:
     y: float = number(0.0, -1000, 1000, "m", "Left", "Distance to the left across the slope", required=True)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class ObstacleSpec:
     """Something that a course of kind follow goes round, measured from the start; write `[[obstacle]]` above each."""
 
@@ -117,7 +117,7 @@ class ObstacleSpec:
     name: str = text("", 40, "Name", "What messages call it")
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class PushSpec:
     """A constant force on one body for a while, unknown to the skier; write `[[push]]` above each."""
 

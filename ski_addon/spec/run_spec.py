@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from .fields import ROWS, rows, text
 from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import ground_beside
+from .records import record
 from .rows import GateSpec, ObstacleSpec, PointSpec, PushSpec, RhythmSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
 
@@ -22,7 +23,7 @@ SCHEMA_VERSION = 1
 """Version of the run document; part of the content hash."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class RunSpec:
     """One run: skier, slope, course, technique, figure, snow, simulation, bake, and rows of gates, points and others.
 

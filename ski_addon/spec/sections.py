@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from .fields import choice, flag, number, text, whole
+from .records import record
 
 _TURNS, _GATES, _BUMPS = ("turns",), ("gates",), ("bumps",)
 _RHYTHM, _FOLLOW = ("rhythm",), ("follow",)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SkierSpec:
     """Who skis, and on what."""
 
@@ -51,7 +51,7 @@ class SkierSpec:
     )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SlopeSpec:
     """The ground: a plane, bumps across the fall line, a field of moguls, or a grid of heights."""
 
@@ -130,7 +130,7 @@ class SlopeSpec:
     )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class CourseSpec:
     """Where the skis go: linked turns, gates, a drawn path, lines over bumps and moguls, what a rhythm makes, or a path
     that is followed past obstacles.
@@ -347,7 +347,7 @@ class CourseSpec:
     )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class TechniqueSpec:
     """How the skier skis it."""
 
@@ -426,7 +426,7 @@ class TechniqueSpec:
     )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SnowSpec:
     """What the skis run on."""
 

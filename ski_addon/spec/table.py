@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -68,6 +67,8 @@ def find_field(key: str) -> FieldInfo:
 
 def nearest_key(key: str) -> str:
     """Return the valid dotted key most like `key`; the same name in another section comes first."""
+    import difflib
+
     key = key[:100]  # comparing takes time in proportion to the square of the length
     section, _, name = key.rpartition(".")
 
@@ -79,6 +80,14 @@ def nearest_key(key: str) -> str:
     return max(field_table().values(), key=likeness).key
 
 
+def _nearest_table(key: str) -> str:
+    """Return the section or kind of rows most like `key`, as its header is written."""
+    import difflib
+
+    nearest = difflib.get_close_matches(key[:100], (*SECTIONS, *row_kinds()), n=1, cutoff=0.0)[0]
+    return f"[[{nearest}]]" if nearest in row_kinds() else f"[{nearest}]"
+
+
 def flattened(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return nested tables as dotted keys; unknown keys and sections that are no tables raise `SpecError`."""
     flat: dict[str, Any] = {}
@@ -88,9 +97,9 @@ def flattened(content: Mapping[str, Any]) -> dict[str, Any]:
                 raise SpecError(key, value, problem="is not a table", hint=f"write its keys under [{key}]")
             flat |= {f"{key}.{name}": inner for name, inner in value.items()}
         elif isinstance(value, Mapping) and key not in field_table():
-            nearest = difflib.get_close_matches(key[:100], (*SECTIONS, *row_kinds()), n=1, cutoff=0.0)[0]
-            shown = f"[[{nearest}]]" if nearest in row_kinds() else f"[{nearest}]"
-            raise SpecError(f"[{key}]", problem="is not a section of a run", hint=f"did you mean {shown}?")
+            raise SpecError(
+                f"[{key}]", problem="is not a section of a run", hint=f"did you mean {_nearest_table(key)}?"
+            )
         else:
             flat[key] = value
     for key in flat:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
-import unicodedata
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -59,6 +57,8 @@ def parse_text(info: FieldInfo, value: object) -> object:
         raise SpecError(info.key, problem="has no value", hint=f"give one of: {info.allowed}")
     if info.kind == TEXT and stripped[0] not in "\"'":
         return value
+    import tomllib
+
     try:
         parsed = tomllib.loads(f"value = {stripped}")
     except (ValueError, RecursionError):
@@ -79,6 +79,8 @@ def _check_text(info: FieldInfo, value: object) -> None:
     if len(value) > (info.high or 0):
         problem = f"has {len(value)} characters, allowed are"
         raise SpecError(info.key, value, info.allowed, "shorten it", problem=problem)
+    import unicodedata
+
     if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in value if letter not in "\n\t"):
         raise SpecError(info.key, value, problem="has control characters", hint="remove them")
 
