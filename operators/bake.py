@@ -6,12 +6,14 @@ from typing import Any
 
 import bpy
 
+from ..ski_addon.animation.span import FRAMES, SECONDS, WHOLE, Part
 from ..ski_addon.blender.jobs import RUNNING
 from ..ski_addon.blender.properties import tell
 from ..ski_addon.blender.shown import required_skier, skier_of
 from .failing import Failed, reported
 
 SIMULATION, PREVIEW = "SIMULATION", "PREVIEW"
+SETTINGS = "SETTINGS"
 
 
 class SKI_OT_bake(bpy.types.Operator):
@@ -30,6 +32,24 @@ class SKI_OT_bake(bpy.types.Operator):
         ],
         default=SIMULATION,
         options={"SKIP_SAVE"},
+    )
+    part: bpy.props.EnumProperty(
+        name="Part of the Run",
+        description="What gets keys; as the Ski tab has it unless a script says",
+        items=[
+            (SETTINGS, "As in the Tab", "As the skier's settings have it"),
+            (WHOLE, "Whole Run", "From the start to the end"),
+            (SECONDS, "Seconds", "From one second of the run to another"),
+            (FRAMES, "Frames", "From one frame of the scene to another"),
+        ],
+        default=SETTINGS,
+        options={"SKIP_SAVE"},
+    )
+    begin: bpy.props.FloatProperty(
+        name="Begin", description="Seconds from the start of the run, or a frame of the scene", options={"SKIP_SAVE"}
+    )
+    end: bpy.props.FloatProperty(
+        name="End", description="As Begin; 0 seconds stand for the end of the run", options={"SKIP_SAVE"}
     )
 
     @classmethod
@@ -56,8 +76,9 @@ class SKI_OT_bake(bpy.types.Operator):
 
                 context.view_layer.update()
                 skier = required_skier(context)
+                part = None if self.part == SETTINGS else Part(self.part, self.begin, self.end)
                 made = bake_preview if self.source == PREVIEW else bake_simulation
-                run, result = made(context.scene, skier)
+                run, result = made(context.scene, skier, part)
         except Failed:
             return {"CANCELLED"}
         lines = bake_lines(result)

@@ -11,6 +11,7 @@ from ..body.kinematics import forward_kinematics
 from ..errors import SkiAddonError, SpecError
 from ..frames import Array, matrix_from_quaternion, quaternion_from_matrix, quaternion_multiply
 from .interpolation import Bracket, bracket, linear, slerp
+from .span import FrameSpan
 
 if TYPE_CHECKING:
     from ..body.skeleton import Skeleton
@@ -47,6 +48,13 @@ class BodyPoses:
         out[..., :3, 3] = self.position
         out[..., 3, 3] = 1.0
         return out
+
+    def within(self, span: FrameSpan) -> BodyPoses:
+        """Return the poses of the frames in `span`."""
+        kept = span.within(self.frame)
+        if kept.all():
+            return self
+        return BodyPoses(self.frame[kept], self.time[kept], self.position[kept], self.quaternion[kept], self.body_names)
 
     def moved(self, matrix: Array | None) -> BodyPoses:
         """Return the poses moved by `matrix` (4, 4), a turn and a shift; None moves nothing."""

@@ -49,6 +49,15 @@ def kept_places(frame: Array, values: Array, distance: float) -> Array:
     return kept_keys(frame, values, distance, lambda a, b: np.linalg.norm(a - b, axis=1))
 
 
+def kept_numbers(frame: Array, values: Array, share: float) -> Array:
+    """Return the keys to keep of numbers `values` (m,), to within a `share` of the range from least to greatest."""
+    if share == 0.0:
+        return np.arange(len(frame))
+    span = float(np.ptp(values)) if len(values) else 0.0
+    tolerance = max(share * span, 1e-30)  # of numbers that never change two keys are enough
+    return kept_keys(frame, np.asarray(values)[:, None], tolerance, lambda a, b: np.abs(a - b)[:, 0])
+
+
 def _angle(a: Array, b: Array) -> Array:
     """Return the angle (m,) [degrees] between rotations (m, 4)."""
     b = np.where(np.sum(a * b, axis=1, keepdims=True) < 0.0, -b, b)

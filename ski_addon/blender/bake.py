@@ -18,7 +18,8 @@ from ..errors import SpecError
 from ..frames import Array
 from ..spec import BakeSpec, RunSpec, SkierSpec
 from .armature_keys import ArmatureKeys
-from .channels import KeyWriter, assign_action, bake_action
+from .channels import assign_action, bake_action
+from .fewer_keys import FewerKeys, KeyOptions
 from .frame_rate import scene_rate
 from .rig import build_rig, rest_pose
 from .skier.figure import Figure, build_figure
@@ -44,17 +45,6 @@ class BakeResult:
     frame_first: float
     frame_last: float
     note: str = ""
-
-
-@dataclass(frozen=True)
-class KeyOptions:
-    """Which keys are written: those that deviate by less than `tolerance_deg` [degrees] or `tolerance_mm` [mm] from
-    their neighbours are left out (0 keeps all); `as_strip` makes a strip instead of the active action.
-    """
-
-    as_strip: bool = False
-    tolerance_deg: float = 0.0
-    tolerance_mm: float = 0.0
 
 
 def recorded_run(recording: Recording) -> RunSpec:
@@ -83,11 +73,12 @@ def bake_recording(
     scene and action is set. Nothing else of the file is changed, the selection included. `world_from_run` (4, 4) says
     where in the world the run lies (default: its start is the world's origin); `keys` as in `bake_poses`.
     """
-    options = options or BakeSpec()
+    options, keys = options or BakeSpec(), keys or KeyOptions()
     skier = recorded_skier(recording)
     skeleton = build_skeleton(skier)
     bone_map = bone_map or BoneMap.load(BONE_MAP)
     poses = sample_body_poses(recording, skeleton, scene_rate(scene), options.subframes, options.frame_start)
+    poses = poses.within(keys.span)
     if armature is None:
         armature = new_skier(skier, skeleton, scene)
     channels = sample_channels(recording, poses.time)
@@ -107,8 +98,8 @@ def bake_poses(
 ) -> BakeResult:
     """Bake `poses` and `channels` of `figure` onto `armature`; `name` is that of a new action.
 
-    `keys` says which keys are left out and whether the action becomes a strip. The frame range of scene and action is
-    set. Nothing else of the file is changed.
+    `keys` says which keys are left out and whether the action becomes a strip; `poses` are in its span already. The
+    frame range of scene and action is set. Nothing else of the file is changed.
     """
     keys = keys or KeyOptions()
     check_armature(armature, bone_map, poses.body_names)
@@ -118,7 +109,7 @@ def bake_poses(
     for bone_keys in keyframes.channels:
         armature.pose.bones[bone_keys.bone].rotation_mode = "QUATERNION"
     ArmatureKeys(armature, channelbag, keys.tolerance_deg, 0.001 * keys.tolerance_mm, 1.0).write_bones(keyframes)
-    write_channels(armature, channels, KeyWriter(channelbag, poses.frame))
+    write_channels(armature, channels, FewerKeys(channelbag, poses.frame, keys))
     set_range(scene, action, poses.frame)
     note = ""
     if keys.as_strip:
@@ -166,13 +157,13 @@ def check_armature(armature: bpy.types.Object, bone_map: BoneMap, bodies: Iterab
             raise SpecError(f"bones.{entry.bone}", None, "", hint, problem="is a connected bone and cannot move")
 
 
-def write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], writer: KeyWriter) -> None:
+def write_channels(armature: bpy.types.Object, channels: tuple[Channel, ...], writer: FewerKeys) -> None:
     """Write numbers to drive with as animated custom properties of `armature`."""
     for channel in channels:
         armature[channel.name] = float(channel.values[0])
         unit = f" [{channel.unit}]" if channel.unit else ""
         armature.id_properties_ui(channel.name).update(description=channel.doc + unit)
-        writer.write(f'["{channel.name}"]', channel.values, CHANNEL_GROUP)
+        writer.numbers(f'["{channel.name}"]', channel.values, CHANNEL_GROUP)
 
 
 def set_range(scene: bpy.types.Scene, action: bpy.types.Action, frame: np.ndarray) -> None:

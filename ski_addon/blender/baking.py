@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ..animation.span import FRAMES, SECONDS, Part
 from ..body import build_skeleton
 from ..errors import SpecError
 from ..spec import BakeSpec, RunSpec
-from ..turning.figures import build_figure
+from ..turning.figures import build_figure, figure_channels
 from ..turning.preview import preview_motion
-from .armatures import ArmatureOptions, bake_on_armature
-from .bake import BakeResult, KeyOptions, bake_recording, recorded_run
+from .armatures import ArmatureBake, ArmatureOptions, BakedRun, bake_on_armature, lay_on_armature
+from .bake import BakeResult, bake_recording, recorded_run
 from .bone_tables import own_map
 from .cache import load_recording
 from .course_objects import gate_objects
-from .figures import bake_figure
+from .fewer_keys import KeyOptions
+from .figures import bake_figure, instant_poses
 from .frame_rate import scene_rate
 from .ground import Place, renew_ground
 from .placing import world_from_run
@@ -27,67 +30,112 @@ from .spray import build_spray
 
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
+    from ..turning.figures import FigureModel
+    from ..turning.motion import TurningMotion
+
+LIKE_A_PERSON = "alpine"
+"""The kind of figure that can be laid on an armature of the user's own: its feet stay in boots that lie on skis."""
 
 
-def bake_simulation(scene: bpy.types.Scene, skier: bpy.types.Object) -> tuple[RunSpec, BakeResult]:
+def bake_simulation(
+    scene: bpy.types.Scene, skier: bpy.types.Object, part: Part | None = None
+) -> tuple[RunSpec, BakeResult]:
     """Bake the recording of `skier`, slope, tracks and gates with it; returns the run that was baked and what was made.
 
-    Raises `SkiAddonError`.
+    `part` (default: what the skier's settings say) is the part of the run that gets keys. Raises `SkiAddonError`.
     """
     settings = skier.ski
     recording = load_recording(settings.recording)
     run, options = recorded_run(recording), read_spec(settings).bake
-    matrix, keys = world_from_run(settings), key_options(settings)
+    keys = key_options(settings, part, scene_rate(scene), options, _duration(recording))
+    matrix = world_from_run(settings)
     if settings.is_own:
-        result = _on_own_armature(recording, scene, skier, options)
+        result = _told(bake_on_armature(recording, scene, skier, own_map(skier), _how(settings, keys), options, matrix))
     else:
         fit_figure(skier, run)
         result = bake_recording(recording, scene, armature=skier, options=options, world_from_run=matrix, keys=keys)
-    _lay_ground(scene, settings, recorded_ride(recording, build_skeleton(run.skier)), run)
+    _lay_ground(scene, settings, recorded_ride(recording, build_skeleton(run.skier)), run, keys)
     if settings.spray:
-        emitter = build_spray(recording, run, settings.ground, scene_rate(scene), options.frame_start)
+        emitter = build_spray(recording, run, settings.ground, scene_rate(scene), options.frame_start, keys)
         emitter.parent = settings.start
     return run, result
 
 
-def _on_own_armature(
-    recording: Recording, scene: bpy.types.Scene, armature: bpy.types.Object, options: BakeSpec
-) -> BakeResult:
-    """Bake on an armature of the user's own by the bone map that fits it."""
-    settings = armature.ski
-    how = ArmatureOptions(
-        root=settings.root_motion,
-        legs=settings.legs,
-        equipment=settings.equipment,
-        as_strip=settings.as_strip,
-        tolerance_deg=settings.tolerance_deg,
-        tolerance_mm=settings.tolerance_mm,
-    )
-    made = bake_on_armature(recording, scene, armature, own_map(armature), how, options, world_from_run(settings))
-    return BakeResult(armature, made.action, made.frame_first, made.frame_last, "; ".join(made.notes))
-
-
-def key_options(settings: Any) -> KeyOptions:
-    """Return which keys a skier's settings ask for."""
-    return KeyOptions(settings.as_strip, settings.tolerance_deg, settings.tolerance_mm)
-
-
-def bake_preview(scene: bpy.types.Scene, skier: bpy.types.Object) -> tuple[RunSpec, BakeResult]:
+def bake_preview(
+    scene: bpy.types.Scene, skier: bpy.types.Object, part: Part | None = None
+) -> tuple[RunSpec, BakeResult]:
     """Bake the instant motion of the run that the settings of `skier` ask for; see `bake_simulation`."""
     settings, run = skier.ski, read_spec(skier.ski)
-    if settings.is_own:
-        hint = "simulate the run and bake that"
-        raise SpecError("the preview", skier.name, hint=hint, problem="cannot be baked on an armature of your own")
+    if settings.is_own and run.figure.kind != LIKE_A_PERSON:
+        hint = f"set figure.kind to {LIKE_A_PERSON}, or bake on a figure made by Add Skier"
+        raise SpecError("figure.kind", run.figure.kind, hint=hint, problem="cannot be laid on an armature of your own")
     model, motion = build_figure(run), preview_motion(run)
-    fit_figure(skier, run)
-    result = bake_figure(
-        model, run, motion, scene, armature=skier, world_from_run=world_from_run(settings), keys=key_options(settings)
-    )
-    _lay_ground(scene, settings, instant_ride(model, run, motion), run)
+    keys = key_options(settings, part, scene_rate(scene), run.bake, motion.duration)
+    if settings.is_own:
+        result = _preview_on_own_armature(model, run, motion, scene, skier, keys)
+    else:
+        fit_figure(skier, run)
+        matrix = world_from_run(settings)
+        result = bake_figure(model, run, motion, scene, armature=skier, world_from_run=matrix, keys=keys)
+    _lay_ground(scene, settings, instant_ride(model, run, motion), run, keys)
     return run, result
 
 
-def _lay_ground(scene: bpy.types.Scene, settings: Any, ride: Ride, run: RunSpec) -> None:
+def _preview_on_own_armature(
+    model: FigureModel,
+    run: RunSpec,
+    motion: TurningMotion,
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    keys: KeyOptions,
+) -> BakeResult:
+    """Bake `motion` on an armature of the user's own by the bone map that fits it."""
+    settings = armature.ski
+    poses = instant_poses(model, run, motion, scene_rate(scene), run.bake).within(keys.span)
+    channels = figure_channels(model, run, motion, poses.time)
+    moved = BakedRun(poses.moved(world_from_run(settings)), channels, model.skeleton)
+    return _told(lay_on_armature(moved, scene, armature, own_map(armature), _how(settings, keys), run.bake.action))
+
+
+def _how(settings: Any, keys: KeyOptions) -> ArmatureOptions:
+    """Return how a skier's settings ask to bake on an armature of the user's own."""
+    return ArmatureOptions(
+        root=settings.root_motion,
+        legs=settings.legs,
+        equipment=settings.equipment,
+        as_strip=keys.as_strip,
+        tolerance_deg=keys.tolerance_deg,
+        tolerance_mm=keys.tolerance_mm,
+        tolerance_percent=keys.tolerance_percent,
+        span=keys.span,
+    )
+
+
+def _told(made: ArmatureBake) -> BakeResult:
+    return BakeResult(made.armature, made.action, made.frame_first, made.frame_last, "; ".join(made.notes))
+
+
+def _duration(recording: Recording) -> float:
+    """Return the time from the first recorded moment to the last [s]."""
+    return float(recording.time[-1] - recording.time[0]) if len(recording.time) else 0.0
+
+
+def part_of(settings: Any) -> Part:
+    """Return the part of the run that a skier's settings ask to bake."""
+    if settings.part == SECONDS:
+        return Part(SECONDS, settings.part_begin, settings.part_end)
+    if settings.part == FRAMES:
+        return Part(FRAMES, settings.part_first, settings.part_last)
+    return Part()
+
+
+def key_options(settings: Any, part: Part | None, rate: float, options: BakeSpec, duration: float) -> KeyOptions:
+    """Return which keys a skier's settings ask for, of a run of `duration` [s] at `rate` [frames/s]."""
+    keys = KeyOptions(settings.as_strip, settings.tolerance_deg, settings.tolerance_mm, settings.tolerance_percent)
+    return replace(keys, span=(part or part_of(settings)).span(rate, options.frame_start, duration))
+
+
+def _lay_ground(scene: bpy.types.Scene, settings: Any, ride: Ride, run: RunSpec, keys: KeyOptions) -> None:
     """Put slope, tracks and gates of the run under the skier."""
     place = Place(settings.start, settings.slope_mesh is not None, gate_objects(settings, run), settings.tracks)
-    settings.ground = renew_ground(ride, run, scene, settings.ground, read_spec(settings).bake, place)
+    settings.ground = renew_ground(ride, run, scene, settings.ground, read_spec(settings).bake, place, keys)

@@ -10,7 +10,8 @@ from ..spec import BakeSpec, RunSpec
 from ..terrain import build_terrain
 from ..turning.figures import build_figure, figure_channels, figure_poses
 from ..turning.preview import preview_motion
-from .bake import BakeResult, KeyOptions, bake_poses, scene_rate
+from .bake import BakeResult, bake_poses, scene_rate
+from .fewer_keys import KeyOptions
 from .ground import Place, renew_ground
 from .ride import figure_bone_map, instant_ride
 from .rig import build_figure_rig
@@ -20,6 +21,7 @@ from .strobe import render_ride
 if TYPE_CHECKING:
     import bpy
 
+    from ..animation.poses import BodyPoses
     from ..turning.figures import FigureModel
     from ..turning.motion import TurningMotion
 
@@ -43,15 +45,21 @@ def bake_figure(
     `options` (default: those of `spec`) give keys per frame, first frame and the action's name. As `bake_recording`
     it sets the frame range of scene and action, replaces the keys of an earlier bake, and touches nothing else.
     """
-    options = options or spec.bake
-    terrain = build_terrain(spec.slope)
-    rate = scene_rate(scene)
-    poses = figure_poses(model, spec, motion, rate, options.subframes, options.frame_start, terrain=terrain)
+    options, keys = options or spec.bake, keys or KeyOptions()
+    poses = instant_poses(model, spec, motion, scene_rate(scene), options).within(keys.span)
     channels = figure_channels(model, spec, motion, poses.time)
     poses = poses.moved(world_from_run)
     if armature is None:
         armature = new_figure(model, spec, scene)
     return bake_poses(poses, channels, armature, figure_of(model), figure_bone_map(model), scene, options.action, keys)
+
+
+def instant_poses(
+    model: FigureModel, spec: RunSpec, motion: TurningMotion, rate: float, options: BakeSpec
+) -> BodyPoses:
+    """Return the poses of the figure `model` on its ground at the keys that `options` ask for, in the run's frame."""
+    terrain = build_terrain(spec.slope)
+    return figure_poses(model, spec, motion, rate, options.subframes, options.frame_start, terrain=terrain)
 
 
 def new_figure(model: FigureModel, spec: RunSpec, scene: bpy.types.Scene) -> bpy.types.Object:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -10,11 +11,12 @@ import numpy as np
 
 from ..animation.gate_motion import POLE_LENGTH, GateSwing
 from ..course import Gates, course_gates
-from ..frames import Array, quaternion_multiply
+from ..frames import Array, matrix_from_quaternion, quaternion_multiply
 from ..spec import RunSpec
 from ..spec.gate_defaults import SLALOM_SPACING_MAX
 from ..terrain import Terrain
-from .channels import KeyWriter, assign_action, bake_action
+from .channels import MARK, assign_action, bake_action
+from .fewer_keys import FewerKeys, KeyOptions
 from .materials import Paint, painted
 from .meshes import part_mesh
 from .skier.shapes import Part, Ring, box, dome, join, stack
@@ -24,7 +26,7 @@ POLE_RADIUS = 0.016
 PANEL_WIDTH, PANEL_HEIGHT, PANEL_LOW = 0.75, 0.50, 1.05
 """Distance between a gate's two poles, height of its panel and of the panel's lower edge over the snow [m]."""
 COLOURS = ("red", "blue")
-PART = "ski_gate_part"
+PART, OUTER, PANEL = "ski_gate_part", "outer", "panel"
 """Custom property of the outer pole and the panel of a gate put by hand: which of the two it is."""
 _BURIED = 0.30
 _PAINTS = {
@@ -81,14 +83,14 @@ def dress_gate(pole: bpy.types.Object, index: int, side: float) -> None:
             bpy.data.objects.remove(part)
         return
     key, make = _panel_mesh(colour, side)
-    wanted = {"outer": pole.data, "panel": _kept(key, make)}
+    wanted = {OUTER: pole.data, PANEL: _kept(key, make)}
     for name, mesh in wanted.items():
         part = parts.get(name)
         if part is None:
             part = _stand("", mesh, np.zeros(3), pole.users_collection[0])
             part.parent, part[PART] = pole, name
         part.data, part.name = mesh, f"{pole.name} {name}"
-        part.location = (0.0, side * PANEL_WIDTH if name == "outer" else 0.0, 0.0)
+        part.location = (0.0, side * PANEL_WIDTH if name == OUTER else 0.0, 0.0)
 
 
 def _pole_of(index: int) -> Callable[[], Part]:
@@ -123,20 +125,61 @@ def bake_gates(
     rate: float,
     frame_start: float,
     turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0),
+    keys: KeyOptions | None = None,
 ) -> None:
     """Give `gates` keys on the frames during which they swing, at `rate` [frames/s]; time 0 is `frame_start`.
 
-    `turn` is the quaternion of the run's frame in the world.
+    `turn` is the quaternion of the run's frame in the world; `keys` says which frames are baked, and which keys are
+    left out. The keys of an earlier bake go, also of a gate that does not swing now.
     """
+    keys = keys or KeyOptions()
     for objects, swing in zip(gates, swings, strict=True):
+        _forget(objects, turn)
         if swing is None:
             continue
         frame = np.arange(np.floor(swing.time[0] * rate), np.ceil(swing.time[-1] * rate) + 1.0)
-        turns = quaternion_multiply(np.array(turn), swing.quaternion(swing.at(frame / rate)))
+        frame = frame[keys.span.within(frame_start + frame)]
+        if not len(frame):
+            continue
+        swung = swing.quaternion(swing.at(frame / rate))
         action, slot, channelbag = bake_action(objects[0], objects[0].name)
-        KeyWriter(channelbag, frame_start + frame).write("rotation_quaternion", turns, "Gate")
-        for obj in objects:  # they move as one
-            assign_action(obj, action, slot)
+        writer = FewerKeys(channelbag, frame_start + frame, keys)
+        writer.rotations("rotation_quaternion", quaternion_multiply(np.array(turn), swung), "Gate")
+        for obj in objects:
+            if obj.parent != objects[0]:  # they move as one
+                assign_action(obj, action, slot)
+            elif obj.get(PART) == OUTER:
+                _hold_foot(obj, frame_start + frame, swung, keys)
+
+
+def _hold_foot(outer: bpy.types.Object, frame: Array, swung: Array, keys: KeyOptions) -> None:
+    """Key the place of an outer pole that hangs on its gate's turning pole, so that its own foot stays in the snow."""
+    back = np.swapaxes(matrix_from_quaternion(swung), -1, -2)
+    action, slot, channelbag = bake_action(outer, outer.name)
+    FewerKeys(channelbag, frame, keys).places("location", back @ _beside(outer), "Gate")
+    assign_action(outer, action, slot)
+
+
+def _beside(outer: bpy.types.Object) -> Array:
+    """Return where an outer pole stands from its gate's turning pole (3,) [m]."""
+    return np.array((0.0, math.copysign(PANEL_WIDTH, outer.location.y), 0.0))
+
+
+def _forget(objects: list[bpy.types.Object], turn: tuple[float, float, float, float]) -> None:
+    """Take away the keys that an earlier bake gave the parts of a gate, unless they are used elsewhere too."""
+    for obj in objects:
+        action = obj.animation_data.action if obj.animation_data else None
+        if action is None or not action.get(MARK) or not action.is_editable:
+            continue
+        moved = [one for one in objects if one.animation_data and one.animation_data.action == action]
+        if action.users - int(action.use_fake_user) > len(moved):
+            continue
+        for one in moved:
+            one.animation_data.action = None
+            one.rotation_quaternion = (1.0, 0.0, 0.0, 0.0) if one.parent in objects else turn
+            if one.get(PART) == OUTER:
+                one.location = _beside(one)
+        bpy.data.actions.remove(action)
 
 
 def has_panels(gates: Gates) -> bool:

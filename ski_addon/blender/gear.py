@@ -13,7 +13,8 @@ from ..animation.poses import BodyPoses
 from ..animation.retarget import Retargeted
 from ..animation.target import TargetBody, TargetRest
 from ..frames import Array, continuous_quaternions, matrix_from_quaternion, quaternion_from_matrix
-from .channels import MARK, KeyWriter, assign_action, bake_action
+from .channels import MARK, assign_action, bake_action
+from .fewer_keys import FewerKeys, KeyOptions
 from .meshes import part_mesh
 from .skier.build import equipment_part
 from .skier.figure import ALPINE_GEAR, build_figure
@@ -79,8 +80,11 @@ def put_gear(
     scale: float,
     scene: bpy.types.Scene,
     name: str,
+    keys: KeyOptions,
 ) -> tuple[bpy.types.Object, ...]:
     """Put every piece of `places` on `armature`, whose unit is `scale` metres; `name` is that of the poles' actions.
+
+    `keys` says which keys are left out.
 
     Gear of an earlier bake is used again, also with a mesh that the user gave it. Gear without a place is removed.
     """
@@ -98,7 +102,7 @@ def put_gear(
             _collection_of(armature, scene).objects.link(obj)
         if len(place.rotation) > 1:
             action, slot, channelbag = bake_action(obj, f"{name} {body}")
-            KeyWriter(channelbag, frame).write("rotation_quaternion", place.rotation, "Object Transforms")
+            FewerKeys(channelbag, frame, keys).rotations("rotation_quaternion", place.rotation, "Object Transforms")
             assign_action(obj, action, slot)
         made.append(obj)
     return tuple(made)

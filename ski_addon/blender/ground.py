@@ -13,6 +13,7 @@ from ..spec import BakeSpec
 from ..terrain import build_terrain
 from .bake import scene_rate
 from .channels import MARK as BAKED
+from .fewer_keys import KeyOptions
 from .gate_placing import GROUND_MARK
 from .gates import bake_gates, build_gates
 from .obstacles import build_obstacles
@@ -64,11 +65,13 @@ def renew_ground(
     collection: bpy.types.Collection | None,
     options: BakeSpec | None = None,
     place: Place | None = None,
+    keys: KeyOptions | None = None,
 ) -> bpy.types.Collection:
     """Put slope and tracks of `ride` into `collection` (default: a new one in `scene`) and return it.
 
     Gates go into the collection "Gates" within it, with keys where the skier knocks them over; `options` gives the
-    first frame, `place` where all of it lies. What an earlier bake put there is replaced; what the user put there
+    first frame, `place` where all of it lies, `keys` which frames the gates' motion is baked for; slope and tracks are
+    always those of the whole run. What an earlier bake put there is replaced; what the user put there
     stays.
     """
     if collection is None:
@@ -87,7 +90,8 @@ def renew_ground(
         if not place.gates:
             _put_gates(gates, place.start)
         if len(swings) == len(gates):  # gates that stand there may be others than those of an older recording
-            bake_gates(gates, swings, scene_rate(scene), (options or BakeSpec()).frame_start, _turn(place.start))
+            first = (options or BakeSpec()).frame_start
+            bake_gates(gates, swings, scene_rate(scene), first, _turn(place.start), keys)
         for obj in [] if place.gates else [obj for objects in gates for obj in objects]:
             obj[MARK] = True
     made += build_obstacles(spec, terrain, collection, snow=ride.on_snow)

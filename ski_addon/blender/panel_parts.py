@@ -42,6 +42,14 @@ def draw_stage(layout: Any, operator: str, icon: str, possible: bool) -> None:
     row.operator(operator, icon=icon)
 
 
+def draw_part(layout: Any, settings: Any) -> None:
+    """Draw which part of the run is baked."""
+    column = layout.column(align=True)
+    column.prop(settings, "part")
+    for name in {"SECONDS": ("part_begin", "part_end"), "FRAMES": ("part_first", "part_last")}.get(settings.part, ()):
+        column.prop(settings, name)
+
+
 def draw_gates(layout: Any, context: bpy.types.Context, settings: Any) -> None:
     """Draw how to set gates, the one that is selected, and the rows that count while none stand in the scene."""
     column = layout.column(align=True)

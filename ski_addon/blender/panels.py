@@ -14,7 +14,7 @@ from . import live
 from .jobs import RUNNING
 from .own_presets import find_preset, laid_over
 from .panel_fields import EXPERT, MORE, draw_fields, draw_rows, folded_fields, row_words, top_fields
-from .panel_parts import draw_beginning, draw_bones, draw_gates, draw_stage
+from .panel_parts import draw_beginning, draw_bones, draw_gates, draw_part, draw_stage
 from .panel_stages import columns_of, draw_progress, draw_result, draw_words
 from .preferences import is_expert
 from .preset_menus import CLASSES as MENUS
@@ -224,10 +224,12 @@ class SKI_PT_bake(_Step, bpy.types.Panel):
         """Draw the ways to bake and what the last one made."""
         layout, settings, columns = _prepared(self.layout), settings_of(context), columns_of(context)
         draw_fields(layout, settings, top_fields(settings, "bake"))
+        draw_part(layout, settings)
         layout.prop(settings, "as_strip")
         column = layout.column(align=True)
         column.prop(settings, "tolerance_deg")
         column.prop(settings, "tolerance_mm")
+        column.prop(settings, "tolerance_percent")
         column = layout.column(align=True)
         column.prop(settings, "tracks")
         column.prop(settings, "spray")
@@ -240,10 +242,9 @@ class SKI_PT_bake(_Step, bpy.types.Panel):
             row.scale_y = 1.3
             row.enabled = bool(settings.recording) and not RUNNING.text
             row.operator("ski.bake", icon="KEYFRAME_HLT").source = "SIMULATION"
-        if not settings.is_own:
-            row = layout.column()
-            row.enabled = not RUNNING.text
-            row.operator("ski.bake", text="Bake Preview", icon="KEYFRAME").source = "PREVIEW"
+        row = layout.column()
+        row.enabled = not RUNNING.text
+        row.operator("ski.bake", text="Bake Preview", icon="KEYFRAME").source = "PREVIEW"
         draw_result(layout, settings, "bake", run_hash(settings), columns)
 
 

@@ -173,6 +173,29 @@ def _bake_properties() -> dict[str, Any]:
             name="and Millimetres", description="Leave out keys of places that deviate by less; 0 = keep all",
             default=0.0, min=0.0, max=100.0,
         ),
+        "tolerance_percent": bpy.props.FloatProperty(
+            name="and Percent",
+            description="Leave out keys of animated numbers (speed, angles, forces) that deviate by less than so many "
+            "percent of the range that the number has in the run; 0 = keep all",
+            default=0.0, min=0.0, max=20.0,
+        ),
+        "part": bpy.props.EnumProperty(
+            name="Part of the Run",
+            description="What gets keys; slope and tracks are always those of the whole run",
+            items=[("WHOLE", "Whole Run", "From the start to the end"),
+                   ("SECONDS", "Seconds", "From one second of the run to another"),
+                   ("FRAMES", "Frames", "From one frame of the scene to another; the run stays at the frames it has")],
+        ),
+        "part_begin": bpy.props.FloatProperty(
+            name="Begin", description="Where the part begins, from the start of the run", min=0.0, max=3600.0,
+            unit="TIME_ABSOLUTE",
+        ),
+        "part_end": bpy.props.FloatProperty(
+            name="End", description="Where the part ends; 0 = at the end of the run", min=0.0, max=3600.0,
+            unit="TIME_ABSOLUTE",
+        ),
+        "part_first": bpy.props.IntProperty(name="First", description="First frame that is baked", default=1),
+        "part_last": bpy.props.IntProperty(name="Last", description="Last frame that is baked", default=100),
         "tracks": bpy.props.EnumProperty(
             name="Ski Tracks", description="What the skis leave in the snow",
             items=[("mesh", "Mesh", "Grooves that can be seen"), ("curve", "Curves", "Curves as wide as the tracks"),

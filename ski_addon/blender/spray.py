@@ -9,7 +9,8 @@ import numpy as np
 
 from ..animation.spray import spray_motion
 from ..body import build_skeleton
-from .channels import KeyWriter, assign_action, bake_action
+from .channels import assign_action, bake_action
+from .fewer_keys import FewerKeys, KeyOptions
 from .slope import mesh_object, snow_material
 
 if TYPE_CHECKING:
@@ -26,13 +27,19 @@ LENGTH, WIDTH = 0.8, 0.01
 
 
 def build_spray(
-    recording: Recording, run: RunSpec, collection: bpy.types.Collection, rate: float, frame_start: float = 1
+    recording: Recording,
+    run: RunSpec,
+    collection: bpy.types.Collection,
+    rate: float,
+    frame_start: float = 1,
+    keys: KeyOptions | None = None,
 ) -> bpy.types.Object:
     """Return the emitter of `collection` with keys for `recording` of `run`, at `rate` frames a second.
 
     It is a thin face that lies along the edge of the outside ski and looks where the snow flies (see `SprayMotion`),
     with keys for location, rotation and its custom property "strength", from `frame_start` on. One that is there from
-    an earlier bake is taken again, with the particle systems and modifiers that the user gave it.
+    an earlier bake is taken again, with the particle systems and modifiers that the user gave it. `keys` says which
+    frames are baked, and which keys are left out.
 
     Raises `SpecError` for an impossible rate and `EmptyRecordingError` if nothing was recorded.
     """
@@ -44,10 +51,11 @@ def build_spray(
         min=0.0, max=1.0, soft_min=0.0, soft_max=1.0, description="How much snow the skis throw up"
     )
     action, slot, channelbag = bake_action(emitter, NAME)
-    writer = KeyWriter(channelbag, motion.frame)
-    writer.write("location", motion.position, NAME)
-    writer.write("rotation_quaternion", motion.quaternion, NAME)
-    writer.write(f'["{STRENGTH}"]', motion.strength, NAME)
+    kept = (keys or KeyOptions()).span.within(motion.frame)
+    writer = FewerKeys(channelbag, motion.frame[kept], keys or KeyOptions())
+    writer.places("location", motion.position[kept], NAME)
+    writer.rotations("rotation_quaternion", motion.quaternion[kept], NAME)
+    writer.numbers(f'["{STRENGTH}"]', motion.strength[kept], NAME)
     assign_action(emitter, action, slot)
     return emitter
 

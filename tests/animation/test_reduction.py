@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from ski_addon.animation.reduction import kept_places, kept_rotations
+from ski_addon.animation.reduction import kept_numbers, kept_places, kept_rotations
 from ski_addon.animation.rotation_modes import EULER_ORDERS, from_mode, rotation_path, to_mode
 from ski_addon.errors import SpecError
 from ski_addon.frames import continuous_quaternions, matrix_from_quaternion, quaternion_from_matrix, rotation_about
@@ -94,3 +94,17 @@ def test_many_keys_are_reduced_quickly() -> None:
     started = time.perf_counter()
     kept_places(frame, values, 0.005)
     assert time.perf_counter() - started < 2.0
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
+def test_numbers_come_as_near_as_a_share_of_their_range_in_any_unit(unit: float) -> None:
+    values = unit * (np.sin(0.1 * FRAME) + 0.2 * np.cos(0.31 * FRAME))
+    kept = kept_numbers(FRAME, values, 0.02)
+    error = np.abs(np.interp(FRAME, FRAME[kept], values[kept]) - values).max()
+    assert error <= 0.02 * np.ptp(values)
+    assert len(kept) < 0.6 * len(FRAME)
+
+
+def test_numbers_that_never_change_need_two_keys() -> None:
+    assert kept_numbers(FRAME, np.full(len(FRAME), 7.0), 0.01).tolist() == [0, len(FRAME) - 1]
+    assert len(kept_numbers(FRAME, np.sin(FRAME), 0.0)) == len(FRAME), "without tolerance every key is kept"

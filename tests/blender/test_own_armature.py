@@ -91,10 +91,67 @@ def test_the_table_is_kept_as_a_map(core, hero, tmp_path, monkeypatch) -> None:
     assert (again.entries, again.root, again.settings) == (whole.entries, whole.root, whole.settings)
 
 
-def test_the_preview_is_not_for_it(hero) -> None:
+def world_of(armature, bone: str) -> np.ndarray:
+    """Where the head of a bone is in the world at the current frame."""
     import bpy
 
-    with pytest.raises(RuntimeError, match="cannot be baked on an armature of your own: simulate"):
+    evaluated = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return np.array(evaluated.matrix_world @ evaluated.pose.bones[bone].head)
+
+
+def test_the_preview_is_baked_on_it_as_a_simulation_is(core, hero, scene) -> None:
+    """Hips go where the instant figure's do, and the skis under the feet are on its skis."""
+    import bpy
+
+    hero.ski.start.location = (5.0, 3.0, 1.0)
+    bpy.ops.ski.find_bones()
+    assert bpy.ops.ski.bake(source="PREVIEW") == {"FINISHED"}
+    action = hero.animation_data.action
+    assert any('pose.bones["thigh.L"]' in path for path, _ in curves(action))
+    assert {path for path, _ in curves(action) if path.startswith('["')} >= {'["speed"]', '["inclination"]'}
+    assert len([obj for obj in hero.children if "ski_addon_gear" in obj]) == 4
+    spec = core("blender.properties").read_spec(hero.ski)
+    figures, preview = core("turning.figures"), core("turning.preview")
+    model = figures.build_figure(spec)
+    motion = preview.preview_motion(spec)
+    for frame in (scene.frame_start, scene.frame_end):
+        scene.frame_set(frame)
+        poses = figures.poses.poses_at(model, spec, motion, np.array([(frame - 1) / 24.0]))
+        poses = poses.moved(core("blender.placing").world_from_run(hero.ski))
+        true = dict(zip(poses.body_names, poses.position[0], strict=True))
+        assert np.linalg.norm(world_of(hero, "spine") - true["pelvis"]) < 0.35, "the metarig is larger"
+        bpy.context.view_layer.update()
+        for side in "LR":
+            ski = next(obj for obj in hero.children if obj.get("ski_addon_gear") == f"ski.{side}")
+            np.testing.assert_allclose(np.array(ski.matrix_world.translation), true[f"ski.{side}"], atol=0.03)
+
+
+def test_a_part_of_the_preview_replaces_what_was_baked_before(hero, scene) -> None:
+    import bpy
+
+    bpy.ops.ski.find_bones()
+    bpy.ops.ski.bake(source="PREVIEW")
+    action, count, objects = hero.animation_data.action, len(bpy.data.actions), len(bpy.data.objects)
+    assert bpy.ops.ski.bake(source="PREVIEW", part="FRAMES", begin=3, end=6) == {"FINISHED"}
+    assert hero.animation_data.action == action
+    assert (len(bpy.data.actions), len(bpy.data.objects)) == (count, objects)
+    assert (scene.frame_start, scene.frame_end) == (3, 6)
+    for obj in [hero, *[obj for obj in hero.children if obj.animation_data and obj.animation_data.action]]:
+        for curve in curves(obj.animation_data.action).values():
+            frames = [key.co[0] for key in curve.keyframe_points]
+            assert set(frames) <= {3.0, 4.0, 5.0, 6.0}, curve.data_path
+    bpy.ops.ski.simulate()
+    assert bpy.ops.ski.bake(part="SECONDS", begin=0.1, end=0.3) == {"FINISHED"}
+    assert hero.animation_data.action == action and len(bpy.data.actions) == count
+
+
+@pytest.mark.parametrize("kind", ["snowboard", "telemark", "bicycle"])
+def test_the_preview_of_another_figure_is_not_for_it(hero, kind: str) -> None:
+    import bpy
+
+    bpy.ops.ski.find_bones()
+    hero.ski.figure.kind = kind
+    with pytest.raises(RuntimeError, match=rf"figure.kind = .{kind}. cannot be laid on an armature of your own"):
         bpy.ops.ski.bake(source="PREVIEW")
 
 
