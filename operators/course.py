@@ -11,6 +11,7 @@ from bpy_extras import view3d_utils
 
 from ..ski_addon.blender import live
 from ..ski_addon.blender.course_objects import gate_objects, standing_gates
+from ..ski_addon.blender.gate_heights import gates_off_snow, off_snow_words, put_on_snow
 from ..ski_addon.blender.gate_placing import (
     add_gate,
     clear_gates,
@@ -215,6 +216,29 @@ class SKI_OT_refresh_gates(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class SKI_OT_put_gates_on_snow(bpy.types.Operator):
+    """Put gates that were dragged over or under the snow straight on it; numbers and colours stay."""
+
+    bl_idname = "ski.put_gates_on_snow"
+    bl_label = "Put on Snow"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Do it, and say which gate has no snow under it."""
+        try:
+            with reported(self):
+                context.view_layer.update()
+                settings = required_skier(context).ski
+                spec = read_slope(settings)
+                count = put_on_snow(settings, spec)
+                left = off_snow_words(gates_off_snow(settings, spec))
+        except Failed:
+            return {"CANCELLED"}
+        said = f"{count} {'gate' if count == 1 else 'gates'} put on the snow"
+        self.report({"WARNING"} if left else {"INFO"}, f"{said}; {left}" if left else said)
+        return {"FINISHED"}
+
+
 class SKI_OT_clear_gates(bpy.types.Operator):
     """Remove all gates of this skier."""
 
@@ -307,6 +331,7 @@ CLASSES = (
     SKI_OT_add_gate,
     SKI_OT_set_gates,
     SKI_OT_refresh_gates,
+    SKI_OT_put_gates_on_snow,
     SKI_OT_clear_gates,
     SKI_OT_make_slope,
     SKI_OT_sample_slope,

@@ -109,7 +109,7 @@ def refresh_gates(settings: Any) -> None:
         pole.name = "Gate to be numbered"
     upright = quaternion_from_matrix(world_from_run(settings)[:3, :3])
     for index, (pole, foot, side) in enumerate(zip(poles, feet, sides, strict=True)):
-        _put(pole, foot)
+        put_object(pole, foot)
         pole.rotation_quaternion = upright.tolist()
         dress_gate(pole, index, side if wide else 0.0)
     bpy.context.view_layer.update()
@@ -143,11 +143,11 @@ def _new_pole(settings: Any, place: Array) -> bpy.types.Object:
 
     pole = stand_pole(_collection(settings), 0)
     pole.ski_gate.is_gate = True
-    _put(pole, place)
+    put_object(pole, place)
     return pole
 
 
-def _put(obj: bpy.types.Object, place: Array) -> None:
+def put_object(obj: bpy.types.Object, place: Array) -> None:
     """Move an object to `place` (3,) [m, world], whatever it is parented to."""
     parent = obj.parent
     frame = np.eye(4) if parent is None else np.array(parent.matrix_world @ obj.matrix_parent_inverse)

@@ -16,6 +16,7 @@ from ..spec import RunSpec
 from ..spec.records import record
 from . import changes
 from .course_objects import standing_gates
+from .gate_heights import OffSnow, gates_off_snow, off_snow_words
 from .jobs import RUNNING
 from .placing import moved, terrain_of, world_from_run
 from .preferences import preferences
@@ -58,7 +59,7 @@ class Preview:
     """What is drawn of a run: `line` (n, 3) [m, world] with its colours (n, 4), gates' numbers, the `problem` in one
     line with the place (3,) it is at, or None; what the figure is made from; and `ground` (2 k, 3) [m, world], the ends
     of lines that show the slope while it has no mesh. `quick` is there for a quick preview, which is a little less
-    exact, and helps the next one.
+    exact, and helps the next one. `off_snow` are the gates that were dragged off the snow.
     """
 
     key: str
@@ -73,6 +74,7 @@ class Preview:
     matrix: Array = field(default_factory=lambda: np.eye(4))
     ground: Array = field(default_factory=lambda: np.zeros((0, 3)))
     quick: QuickPreview | None = None
+    off_snow: tuple[OffSnow, ...] = ()
 
 
 @dataclass
@@ -105,18 +107,22 @@ def preview_of(settings: Any, before: Preview | None = None, *, quick: bool = Fa
     try:
         spec = read_spec(settings)
         bare = _is_bare(settings)
-        key = f"{spec.content_hash()} {matrix.tobytes().hex()} {bare}"
+        standing = spec.course.kind == "gates" and spec.course.gate_setting == "list"
+        off = gates_off_snow(settings, spec) if standing else ()
+        key = f"{spec.content_hash()} {matrix.tobytes().hex()} {bare} {[(gate.number, gate.height) for gate in off]}"
     except SkiAddonError as error:
         return _without_track(str(error), before)
     if before is not None and before.key == key and (quick or before.quick is None):
         return before
     try:
-        return _with_track(settings, spec, matrix, key, before if quick else None)
+        return _with_track(settings, spec, matrix, key, off, before if quick else None)
     except SkiAddonError as error:
         return _without_track(str(error), before)
 
 
-def _with_track(settings: Any, spec: RunSpec, matrix: Array, key: str, before: Preview | None) -> Preview:
+def _with_track(
+    settings: Any, spec: RunSpec, matrix: Array, key: str, off: tuple[OffSnow, ...], before: Preview | None
+) -> Preview:
     from ..turning.preview import preview_course
     from ..turning.quick import quick_gates
 
@@ -141,10 +147,12 @@ def _with_track(settings: Any, spec: RunSpec, matrix: Array, key: str, before: P
         )
     if refused.any() and not problem:
         problem, place = _too_much_lean(spec, motion, refused), line[int(np.argmax(refused))]
+    if off and not problem:
+        problem, place = off_snow_words(off), off[0].place
     gates = _numbers(settings, spec)
     ground = moved(matrix, ground_lines(spec, motion.position)) if _is_bare(settings) else np.zeros((0, 3))
     speeds = slow, fast
-    return Preview(key, line, colour, gates, problem, place, speeds, motion, spec, matrix, ground, quick)
+    return Preview(key, line, colour, gates, problem, place, speeds, motion, spec, matrix, ground, quick, off)
 
 
 def ground_lines(spec: RunSpec, track: Array) -> Array:

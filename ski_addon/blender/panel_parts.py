@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from . import live
 from .course_objects import gate_fields
 from .jobs import RUNNING
 from .panel_fields import draw_field, draw_rows
@@ -58,6 +59,8 @@ def draw_gates(layout: Any, context: bpy.types.Context, settings: Any) -> None:
     row.operator_menu_enum("ski.set_gates", "discipline", text="Set Course")
     row.operator("ski.refresh_gates", text="", icon="SORTSIZE")
     row.operator("ski.clear_gates", text="", icon="TRASH")
+    if live.STATE.preview is not None and live.STATE.preview.off_snow:
+        column.operator("ski.put_gates_on_snow", icon="SNAP_ON")
     if settings.course.gate_setting != "list":
         return
     gate = context.object

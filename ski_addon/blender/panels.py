@@ -11,6 +11,7 @@ from ..dependencies import missing_dependencies
 from ..errors import SkiAddonError
 from ..spec import RunSpec, row_kinds
 from . import live
+from .gate_heights import off_snow_words
 from .jobs import RUNNING
 from .own_presets import find_preset, laid_over
 from .panel_fields import EXPERT, MORE, draw_fields, draw_rows, folded_fields, row_words, top_fields
@@ -154,6 +155,9 @@ class SKI_PT_course(_Step, bpy.types.Panel):
         preview = live.STATE.preview
         if preview is not None and preview.problem:
             draw_words(layout, preview.problem, columns_of(context), "ERROR", alert=True)
+        off = "" if preview is None else off_snow_words(preview.off_snow)
+        if preview is not None and off and off != preview.problem:
+            draw_words(layout, off, columns_of(context), "ERROR")
 
 
 class SKI_PT_technique(_Step, bpy.types.Panel):
