@@ -12,7 +12,8 @@ from ..errors import SpecError
 from ..frames import Array
 from ..spec import FieldInfo, RunSpec, section_fields
 from .fields import Changed, make_properties, read_field
-from .placing import document_places
+from .nurbs import nurbs_knots, nurbs_line
+from .placing import document_places, moved
 
 OWN_FIELDS = ("side", "radius", "distance")
 """Fields of a gate that its object carries; where it stands says the rest."""
@@ -75,9 +76,6 @@ def _spline(curve: bpy.types.Object) -> Any:
         hint = "draw it in Edit Mode, or choose another curve"
         raise SpecError("curve", curve.name, hint=hint, problem="has no points")
     spline = curve.data.splines[0]
-    if spline.type == "NURBS":
-        hint = "set its spline type to Bezier or Poly (Curve > Set Spline Type)"
-        raise SpecError("curve", curve.name, hint=hint, problem="is a NURBS curve, which has no points to pass")
     if len(_points_of(spline)) < 2:
         raise SpecError("curve", curve.name, hint="add points to it in Edit Mode", problem="has fewer than two points")
     return spline
@@ -88,14 +86,19 @@ def _points_of(spline: Any) -> Any:
 
 
 def _knots(curve: bpy.types.Object) -> Array:
-    """Return the points (n, 3) [m, world] that a curve was drawn with."""
-    points = _points_of(_spline(curve))
-    return np.array([curve.matrix_world @ point.co.to_3d() for point in points])
+    """Return the points (n, 3) [m, world] that a curve was drawn with; of a NURBS curve those on it nearest to them."""
+    spline = _spline(curve)
+    if spline.type == "NURBS":
+        return moved(np.array(curve.matrix_world), nurbs_knots(spline))
+    return np.array([curve.matrix_world @ point.co.to_3d() for point in _points_of(spline)])
 
 
 def _line(curve: bpy.types.Object) -> Array:
     """Return points (n, 3) [m, world] along a curve."""
     spline = _spline(curve)
+    if spline.type == "NURBS":
+        scale = max(np.linalg.norm(np.array(curve.matrix_world)[:3, :3], axis=0).max(), 1e-9)
+        return moved(np.array(curve.matrix_world), nurbs_line(spline, CURVE_STEP / scale))
     if spline.type != "BEZIER":
         return _knots(curve)
     points, line = spline.bezier_points, []

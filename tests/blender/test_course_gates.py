@@ -210,6 +210,34 @@ def test_a_curve_is_the_path(core, ski, scene, read, kind) -> None:
     assert gap.max() < 0.7
 
 
+@pytest.mark.parametrize("ends", [True, False])
+def test_a_nurbs_curve_is_the_path_that_is_seen(core, ski, scene, read, ends) -> None:
+    ski.curve = make_curve(scene, [(0, 0, 0), (15, 6, 0), (35, -6, 0), (55, 6, 0), (75, 0, 0)], "NURBS")
+    ski.curve.scale, ski.curve.location.y = (2.0, 2.0, 2.0), 1.0
+    scene.view_layers[0].update()
+    spline = ski.curve.data.splines[0]
+    spline.order_u, spline.use_endpoint_u, ski.curve.data.resolution_u = 4, ends, 64
+    ski.course.kind = "path"
+    points = np.array([(point.x, point.y) for point in read(ski).point])
+    mesh = ski.curve.to_mesh()
+    seen = np.array([(2.0 * vertex.co.x, 2.0 * vertex.co.y + 1.0) for vertex in mesh.vertices])
+    points[:, 0] *= math.cos(core("terrain").build_terrain(read(ski).slope).mean_angle)
+    gap = np.linalg.norm(points[:, None] - seen[None], axis=2)
+    assert gap.min(axis=1).max() < 0.6 and gap.min(axis=0).max() < 1.0
+    np.testing.assert_allclose(points[[0, -1]], seen[[0, -1]], atol=0.05)
+    assert core("pipeline").make_plan(read(ski)).plan.length > 40.0
+
+
+def test_a_nurbs_curve_is_a_line_of_gates_by_its_points(ski, scene, read) -> None:
+    ski.curve = make_curve(scene, [(20, 2, 0), (32, -2, 0), (44, 2, 0), (56, -2, 0)], "NURBS")
+    ski.curve.data.splines[0].use_endpoint_u = True
+    ski.course.kind, ski.course.gate_setting = "gates", "list"
+    gates = read(ski).gate
+    assert len(gates) == 4
+    thirds = [gate.y for gate in gates]  # with four points it is a Bezier curve: its places at 0, 1/3, 2/3 and 1
+    np.testing.assert_allclose(thirds, [2.0, 2.0 / 27.0, -2.0 / 27.0, -2.0], atol=2e-3)
+
+
 def test_a_curve_can_be_a_line_of_gates(ski, scene, read) -> None:
     ski.curve = make_curve(scene, [(20, 2, 0), (32, -2, 0), (44, 2, 0)])
     ski.course.kind, ski.course.gate_setting = "gates", "list"
@@ -221,7 +249,7 @@ def test_a_curve_can_be_a_line_of_gates(ski, scene, read) -> None:
     [
         ("POLY", [], 'Line" has no points'),
         ("POLY", [(0, 0, 0)], "has fewer than two points"),
-        ("NURBS", [(0, 0, 0), (9, 0, 0), (20, 0, 0)], "set its spline type to Bezier or Poly"),
+        ("NURBS", [(0, 0, 0)], "has fewer than two points"),
     ],
 )
 def test_a_curve_without_a_course_is_refused(core, ski, scene, read, kind, places, words) -> None:
