@@ -12,6 +12,7 @@ from ..spec import RunSpec
 from . import changes
 from .course_objects import gate_fields, standing_gates
 from .fields import write_field
+from .gate_carrier import carry, frame_of, own_turn
 from .placing import document_places, moved, on_ground, run_from_world, terrain_of, world_from_run
 from .properties import read_spec
 
@@ -110,7 +111,7 @@ def refresh_gates(settings: Any) -> None:
     upright = quaternion_from_matrix(world_from_run(settings)[:3, :3])
     for index, (pole, foot, side) in enumerate(zip(poles, feet, sides, strict=True)):
         put_object(pole, foot)
-        pole.rotation_quaternion = upright.tolist()
+        pole.rotation_quaternion = own_turn(pole, upright.tolist())
         dress_gate(pole, index, side if wide else 0.0)
     bpy.context.view_layer.update()
 
@@ -143,15 +144,14 @@ def _new_pole(settings: Any, place: Array) -> bpy.types.Object:
 
     pole = stand_pole(_collection(settings), 0)
     pole.ski_gate.is_gate = True
+    carry(pole, _collection(settings), settings.start)
     put_object(pole, place)
     return pole
 
 
 def put_object(obj: bpy.types.Object, place: Array) -> None:
     """Move an object to `place` (3,) [m, world], whatever it is parented to."""
-    parent = obj.parent
-    frame = np.eye(4) if parent is None else np.array(parent.matrix_world @ obj.matrix_parent_inverse)
-    obj.location = moved(np.linalg.inv(frame), np.asarray(place, dtype=float)[None])[0].tolist()
+    obj.location = moved(np.linalg.inv(np.array(frame_of(obj))), np.asarray(place, dtype=float)[None])[0].tolist()
 
 
 def _collection(settings: Any) -> bpy.types.Collection:

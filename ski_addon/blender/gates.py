@@ -17,6 +17,7 @@ from ..spec.gate_defaults import SLALOM_SPACING_MAX
 from ..terrain import Terrain
 from .channels import MARK, assign_action, bake_action
 from .fewer_keys import FewerKeys, KeyOptions
+from .gate_carrier import own_turn
 from .materials import Paint, painted
 from .meshes import part_mesh
 from .skier.shapes import Part, Ring, box, dome, join, stack
@@ -134,7 +135,8 @@ def bake_gates(
     """
     keys = keys or KeyOptions()
     for objects, swing in zip(gates, swings, strict=True):
-        _forget(objects, turn)
+        own = own_turn(objects[0], turn)
+        _forget(objects, own)
         if swing is None:
             continue
         frame = np.arange(np.floor(swing.time[0] * rate), np.ceil(swing.time[-1] * rate) + 1.0)
@@ -144,9 +146,9 @@ def bake_gates(
         swung = swing.quaternion(swing.at(frame / rate))
         action, slot, channelbag = bake_action(objects[0], objects[0].name)
         writer = FewerKeys(channelbag, frame_start + frame, keys)
-        writer.rotations("rotation_quaternion", quaternion_multiply(np.array(turn), swung), "Gate")
+        writer.rotations("rotation_quaternion", quaternion_multiply(np.array(own), swung), "Gate")
         for obj in objects:
-            if obj.parent != objects[0]:  # they move as one
+            if obj.parent != objects[0]:  # they move as one, with the same parent if any
                 assign_action(obj, action, slot)
             elif obj.get(PART) == OUTER:
                 _hold_foot(obj, frame_start + frame, swung, keys)

@@ -14,6 +14,7 @@ from ..terrain import build_terrain
 from .bake import scene_rate
 from .channels import MARK as BAKED
 from .fewer_keys import KeyOptions
+from .gate_carrier import carry
 from .gate_placing import GROUND_MARK
 from .gates import bake_gates, build_gates
 from .obstacles import build_obstacles
@@ -25,6 +26,7 @@ from .stage import swings_of
 if TYPE_CHECKING:
     from ..simulation.recording import Recording
     from ..spec import RunSpec
+    from ..terrain import Terrain
 
 MARK = GROUND_MARK
 
@@ -85,15 +87,11 @@ def renew_ground(
         lay = build_traces if place.tracks == MESH else build_track_curves
         made += lay(ride.traces, terrain, collection)
     if spec.course.kind == "gates":
-        gates = place.gates or build_gates(spec, terrain, _gates_within(collection))
+        gates = place.gates or _new_gates(spec, terrain, _gates_within(collection), place.start)
         swings = swings_of(ride, spec, terrain)
-        if not place.gates:
-            _put_gates(gates, place.start)
         if len(swings) == len(gates):  # gates that stand there may be others than those of an older recording
             first = (options or BakeSpec()).frame_start
             bake_gates(gates, swings, scene_rate(scene), first, _turn(place.start), keys)
-        for obj in [] if place.gates else [obj for objects in gates for obj in objects]:
-            obj[MARK] = True
     made += build_obstacles(spec, terrain, collection, snow=ride.on_snow)
     for obj in made:
         obj[MARK] = True
@@ -101,13 +99,17 @@ def renew_ground(
     return collection
 
 
-def _put_gates(gates: list[list[bpy.types.Object]], start: bpy.types.Object | None) -> None:
-    """Put new gates where the run lies. They have no parent: Blender would draw a line from each one to it."""
-    if start is None:
-        return
+def _new_gates(
+    spec: RunSpec, terrain: Terrain, collection: bpy.types.Collection, start: bpy.types.Object | None
+) -> list[list[bpy.types.Object]]:
+    """Return the objects of each gate of `spec`, new in `collection`, which lie where the run lies and go with it."""
+    gates = build_gates(spec, terrain, collection)
     for obj in [obj for objects in gates for obj in objects]:
-        obj.location = start.matrix_world @ obj.location
-        obj.rotation_quaternion = _turn(start)
+        obj[MARK] = True
+        carry(obj, collection, start)
+        if start is not None:
+            obj.parent[MARK] = True  # renewed with them
+    return gates
 
 
 def _turn(start: bpy.types.Object | None) -> tuple[float, float, float, float]:

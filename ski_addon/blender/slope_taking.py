@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import MissingInputError, SpecError
 from .cache import ground_path
+from .gate_carrier import gates_stay
 from .mesh_slope import read_ground, sample_mesh, write_ground
 from .placing import place_start
 from .properties import read_spec, write_spec
@@ -38,7 +39,8 @@ def take_slope(settings: Any, depsgraph: bpy.types.Depsgraph, *, use_start: bool
     write_spec(settings, spec.with_overrides(ground.slope_keys(path)))
     settings.slope.grid_file = _as_kept(str(path))
     settings.slope_said = ground.summary
-    place_start(settings, ground.world_from_run)
+    with gates_stay(settings):
+        place_start(settings, ground.world_from_run)
     return ground.summary
 
 
