@@ -21,6 +21,7 @@ from ..ski_addon.blender.gate_placing import (
 )
 from ..ski_addon.blender.properties import read_slope, read_spec
 from ..ski_addon.blender.shown import required_skier, skier_of
+from ..ski_addon.errors import SkiAddonError
 from ..ski_addon.spec import RunSpec
 from .failing import Failed, reported
 
@@ -300,9 +301,14 @@ class SKI_OT_sample_slope(bpy.types.Operator):
 
                 context.view_layer.update()
                 settings = required_skier(context).ski
-                said = take_slope(settings, context.evaluated_depsgraph_get(), use_start=self.use_start)
+                try:
+                    said = take_slope(settings, context.evaluated_depsgraph_get(), use_start=self.use_start)
+                except SkiAddonError as error:
+                    settings.slope_said, settings.slope_failed = str(error), True
+                    raise
         except Failed:
             return {"CANCELLED"}
+        settings.slope_said, settings.slope_failed = said, False
         self.report({"INFO"}, f"Slope taken from {settings.slope_mesh.name}: {said}")
         return {"FINISHED"}
 

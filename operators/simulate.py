@@ -145,11 +145,13 @@ class SKI_OT_simulate(bpy.types.Operator):
             return {"CANCELLED"}
         with reported(self):
             settings = self._settings()
-            settings.recording = save_recording(recording, self._skier)
+            settings.recording, note = save_recording(recording, self._skier)
         settings.bake_hash = ""  # what is baked is of another recording now
         finished = recording.status == "finished"
-        tell(settings, "simulation", self._spec, recording_lines(recording), failed=not finished)
-        self.report({"INFO"} if finished else {"WARNING"}, ending(recording))
+        notes = [f"Note: {note}"] if note else []
+        tell(settings, "simulation", self._spec, [*recording_lines(recording), *notes], failed=not finished)
+        said = f"{ending(recording)}; {note}" if note else ending(recording)
+        self.report({"INFO"} if finished and not note else {"WARNING"}, said)
         return {"FINISHED"}
 
 

@@ -1,15 +1,19 @@
-"""Where a recording lives between Simulate and Bake: beside the .blend, or in the user's cache until that is saved."""
+"""Where recordings and the heights of slopes live: beside the .blend, or in the user's cache until that is saved.
+
+Where neither can be written, a recording is held in memory: nobody shall lose a simulation to a full disk.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import bpy
 
 from ..atomic import check_writable_folder
-from ..errors import MissingInputError, OutputError
+from ..errors import MissingInputError, OutputError, SkiAddonError
 from .preferences import preferences, user_folder
 
 if TYPE_CHECKING:
@@ -19,38 +23,37 @@ FOLDER = "ski_cache"
 _OWN = r"_[0-9a-f]{16}\.npz$"
 KEPT = 10
 """Recordings of files that were never saved that are kept in the user's cache, newest first."""
+HELD = "memory:"
+"""What the path of a recording begins with that is held in memory."""
+_held: dict[str, Recording] = {}
 
 
-def save_recording(recording: Recording, name: str) -> str:
-    """Write `recording` of the skier `name` and return its path as Blender keeps it (relative to a saved .blend)."""
-    if bpy.data.filepath:
-        blend = Path(bpy.data.filepath)
-        target = blend.parent / FOLDER / f"{_plain(blend.stem)}_{_plain(name)}.npz"
-        try:
-            target.parent.mkdir(exist_ok=True)
-            recording.save(target)
-        except (OSError, OutputError):
-            pass  # the .blend lies where nothing may be written
-        else:
-            return f"//{FOLDER}/{target.name}"
-    folder = user_cache()
-    target = folder / f"{_plain(name)}_{recording.header['spec_hash'][:16]}.npz"
-    recording.save(target)
-    _forget_old(folder)
-    return str(target)
+class Kept(NamedTuple):
+    """Where something was kept, `path`, as Blender keeps paths (relative to a saved .blend), and a `note` for the user
+    if that is not where it belongs.
+    """
+
+    path: str
+    note: str = ""
 
 
-def ground_path(name: str) -> Path:
-    """Return where the heights of the skier `name`'s slope are kept; the folder is there and can be written to."""
-    if bpy.data.filepath:
-        folder = Path(bpy.data.filepath).parent / FOLDER
-        try:
-            check_writable_folder(folder)
-        except OutputError:
-            pass  # the .blend lies where nothing may be written
-        else:
-            return folder / f"{_plain(Path(bpy.data.filepath).stem)}_{_plain(name)}_slope.npz"
-    return user_cache() / f"{_plain(name)}_slope.npz"
+def save_recording(recording: Recording, name: str) -> Kept:
+    """Keep `recording` of the skier `name`; in memory, until Blender is closed, if no folder takes it."""
+    alone = f"{_plain(name)}_{recording.header['spec_hash'][:16]}.npz"
+    try:
+        kept = _keep(f"{_plain(name)}.npz", alone, recording.save)
+    except OutputError as error:
+        advice = "bake it now, or make room and simulate again"
+        return Kept(_hold(recording, alone), f"{error}; the recording is held until Blender is closed: {advice}")
+    if not kept.path.startswith("//"):
+        _forget_old(Path(kept.path).parent)
+    return kept
+
+
+def save_ground(name: str, write: Callable[[Path], Any]) -> Kept:
+    """Keep the heights of the skier `name`'s slope by `write`; raises `OutputError` if no folder takes them."""
+    own = f"{_plain(name)}_slope.npz"
+    return _keep(own, own, write)
 
 
 def load_recording(path: str) -> Recording:
@@ -59,6 +62,10 @@ def load_recording(path: str) -> Recording:
 
     if not path:
         raise MissingInputError("the recording", "there is none yet: press Simulate")
+    if path in _held:
+        return _held[path]
+    if path.startswith(HELD):
+        raise MissingInputError("the recording", "it was held in memory and is gone: press Simulate again")
     whole = Path(bpy.path.abspath(path))
     if not whole.is_file():
         raise MissingInputError(whole, "the recording is not there any more: press Simulate again")
@@ -66,18 +73,45 @@ def load_recording(path: str) -> Recording:
 
 
 def user_cache() -> Path:
-    """Return the user's folder for recordings of files that are not saved, made if it is missing."""
+    """Return the user's first folder for what belongs to files that are not saved; it may not be there yet."""
+    return next(_user_folders())
+
+
+def _user_folders() -> Iterator[Path]:
+    """Yield the folder chosen in the preferences, if any, and the add-on's own."""
     known = preferences()
     if known is not None and known.cache_folder:
-        folder = Path(bpy.path.abspath(known.cache_folder))
+        yield Path(bpy.path.abspath(known.cache_folder))
+    yield user_folder("cache")
+
+
+def _keep(beside: str, alone: str, write: Callable[[Path], Any]) -> Kept:
+    """Write a file, named `beside` (after the name of the .blend) or `alone`, into the first folder that takes it.
+
+    Raises `OutputError`, the first one, if none does.
+    """
+    targets = [(folder / alone, "") for folder in _user_folders()]
+    if bpy.data.filepath:
+        blend = Path(bpy.data.filepath)
+        target = blend.parent / FOLDER / f"{_plain(blend.stem)}_{beside}"
+        targets.insert(0, (target, f"//{FOLDER}/{target.name}"))
+    refused: list[SkiAddonError] = []
+    for target, relative in targets:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise OutputError(folder, f"{error.strerror}: choose another folder in the add-on's preferences") from error
-        return folder
-    folder = user_folder("cache")
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+            check_writable_folder(target.parent)
+            write(target)
+        except OutputError as error:
+            refused.append(error)
+        else:
+            note = f"{refused[0]}; kept in {target.parent} instead" if refused else ""
+            return Kept(relative or str(target), note)
+    raise refused[0]
+
+
+def _hold(recording: Recording, name: str) -> str:
+    """Hold `recording` in memory in place of an earlier one of the same name."""
+    _held[HELD + name] = recording
+    return HELD + name
 
 
 def _forget_old(folder: Path) -> None:

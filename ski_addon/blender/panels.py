@@ -123,7 +123,8 @@ class SKI_PT_slope(_Step, bpy.types.Panel):
             column.prop(settings, "slope_resolution")
             column.operator("ski.sample_slope", icon="SNAP_FACE")
             if settings.slope_said:
-                column.label(text=settings.slope_said)
+                icon = "ERROR" if settings.slope_failed else "CHECKMARK"
+                draw_words(column, settings.slope_said, columns_of(context), icon)
         layout.prop(settings, "start")
 
 

@@ -156,6 +156,7 @@ def _scene_properties() -> dict[str, Any]:
             default=0.0, min=0.0, max=20.0, unit="LENGTH",
         ),
         "slope_said": string(name="Sampled", options={"HIDDEN"}),
+        "slope_failed": bpy.props.BoolProperty(options={"HIDDEN"}),
     }  # fmt: skip
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
 
 from ..errors import MissingInputError, SpecError
-from .cache import ground_path
+from .cache import save_ground
 from .gate_carrier import gates_stay
 from .mesh_slope import read_ground, sample_mesh, write_ground
 from .placing import place_start
@@ -34,14 +35,13 @@ def take_slope(settings: Any, depsgraph: bpy.types.Depsgraph, *, use_start: bool
         start, heading = world[:3, 3].tolist(), math.atan2(world[1, 0], world[0, 0])
     ground = sample_mesh(mesh, depsgraph, start, settings.slope_resolution or None, heading=heading)
     spec = read_spec(settings)
-    path = ground_path(settings.id_data.name)
-    write_ground(ground, path)
-    write_spec(settings, spec.with_overrides(ground.slope_keys(path)))
-    settings.slope.grid_file = _as_kept(str(path))
-    settings.slope_said = ground.summary
+    kept = save_ground(settings.id_data.name, partial(write_ground, ground))
+    write_spec(settings, spec.with_overrides(ground.slope_keys(bpy.path.abspath(kept.path))))
+    settings.slope.grid_file = kept.path
+    said = f"{ground.summary}; {kept.note}" if kept.note else ground.summary
     with gates_stay(settings):
         place_start(settings, ground.world_from_run)
-    return ground.summary
+    return said
 
 
 def check_on_mesh(settings: Any, track: Track) -> None:
@@ -53,9 +53,3 @@ def check_on_mesh(settings: Any, track: Track) -> None:
     except (MissingInputError, SpecError):
         return  # another file of heights than one taken from a mesh
     ground.check_track(track.position)
-
-
-def _as_kept(path: str) -> str:
-    """Return a path relative to a saved .blend as Blender writes it, so that the two can be moved together."""
-    folder = bpy.path.abspath("//") if bpy.data.filepath else ""
-    return bpy.path.relpath(path) if folder and path.startswith(folder) else path

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -106,17 +107,19 @@ def write_ground(ground: MeshGround, path: str | Path) -> Path:
     target = Path(path)
     if target.suffix.lower() != ".npz":
         raise OutputError(target, "a ground's file ends in .npz")
-    with atomic_path(target) as temporary, temporary.open("wb") as stream:
-        np.savez(
-            stream,
-            height=ground.heights,
-            spacing=np.array(ground.spacing),
-            origin=np.array(ground.origin),
-            covered=ground.covered,
-            world_from_run=ground.world_from_run,
-            start=ground.start,
-            name=np.array(ground.name),
-        )
+    archive = io.BytesIO()  # an archive that fails on a full disk would fail a second time when it is thrown away
+    np.savez(
+        archive,
+        height=ground.heights,
+        spacing=np.array(ground.spacing),
+        origin=np.array(ground.origin),
+        covered=ground.covered,
+        world_from_run=ground.world_from_run,
+        start=ground.start,
+        name=np.array(ground.name),
+    )
+    with atomic_path(target) as temporary:
+        temporary.write_bytes(archive.getbuffer())
     return target
 
 

@@ -27,7 +27,7 @@ def cache(core, scene):
 
 
 def test_an_unsaved_file_uses_the_user_s_folder(cache, scene) -> None:
-    path = Path(cache.save_recording(Kept(), scene.name))
+    path = Path(cache.save_recording(Kept(), scene.name).path)
     assert path.parent == cache.user_cache()
     assert path.read_bytes() == b"recorded"
     assert "0123456789abcdef" in path.name
@@ -39,7 +39,8 @@ def test_a_saved_file_keeps_it_beside_itself_by_a_relative_path(cache, scene, tm
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot 7.blend"))
     scene = bpy.context.scene
     scene.name = "Take/1"
-    path = cache.save_recording(Kept(), scene.name)
+    path, note = cache.save_recording(Kept(), scene.name)
+    assert note == ""
     assert path == "//ski_cache/shot_7_Take_1.npz"
     assert Path(bpy.path.abspath(path)).read_bytes() == b"recorded"
 
@@ -49,11 +50,14 @@ def test_a_folder_that_takes_no_files_falls_back_to_the_user_s(cache, scene, tmp
 
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     (tmp_path / cache.FOLDER).write_text("in the way")
-    assert Path(cache.save_recording(Kept(), "Scene")).parent == cache.user_cache()
+    kept = cache.save_recording(Kept(), "Scene")
+    assert Path(kept.path).parent == cache.user_cache()
+    assert "it is a file, not a folder; kept in" in kept.note
 
 
 def test_only_the_newest_are_kept(cache, scene) -> None:
     folder = cache.user_cache()
+    folder.mkdir(parents=True, exist_ok=True)
     for index in range(15):
         path = folder / f"Scene_{index:016x}.npz"
         path.write_bytes(b"old")
@@ -76,7 +80,7 @@ def test_only_recordings_are_ever_removed(core, cache, scene, tmp_path: Path) ->
             os.utime(path, (1, 1))
         for index in range(15):
             (tmp_path / f"Scene_{index:016x}.npz").write_bytes(b"old")
-        assert Path(cache.save_recording(Kept(), scene.name)).parent == tmp_path
+        assert Path(cache.save_recording(Kept(), scene.name).path).parent == tmp_path
         assert all(path.is_file() for path in others)
         assert len(list(tmp_path.glob("Scene_*.npz"))) == cache.KEPT
     finally:
@@ -96,6 +100,6 @@ def test_a_recording_comes_back_as_it_was(core, cache, scene) -> None:
     )
     jobs = core("blender.jobs")
     recording = jobs.run_to_end(jobs.simulation_job(run))
-    found = cache.load_recording(cache.save_recording(recording, "Skier"))
+    found = cache.load_recording(cache.save_recording(recording, "Skier").path)
     np.testing.assert_array_equal(found.qpos, recording.qpos)
     assert found.header == recording.header
