@@ -1,66 +1,25 @@
 """The sidebar in a real window, by mouse: from an empty scene to a playing run, Esc, undo, gates, an impossible course.
 
 Needs SKI_ADDON_BLENDER (the command of a Blender with a window), SKI_ADDON_ZIP (a zip that fits its Python), DISPLAY,
-and ImageMagick's `import` for the screenshots, which are left in out/gui to be looked at.
+and ImageMagick's `import` for the screenshots, which are left in out/gui/drive to be looked at.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import shutil
-import subprocess
-import time
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-SHOTS = ROOT / "out" / "gui"
-NEEDED = ("SKI_ADDON_BLENDER", "SKI_ADDON_ZIP", "DISPLAY")
-MINUTES = 6
+from tests.gui.in_window import in_window, run_in_window, shots_of
 
-pytestmark = [
-    pytest.mark.gui,
-    pytest.mark.skipif(any(not os.environ.get(name) for name in NEEDED), reason=f"needs {', '.join(NEEDED)}"),
-]
-
-
-def take_screenshots(folder: Path) -> None:
-    """Serve the requests of the script in the window."""
-    for request in folder.glob("*.shot"):
-        subprocess.run(["import", "-window", "root", str(SHOTS / f"{request.stem}.png")], timeout=60, check=True)
-        request.unlink()
+pytestmark = in_window
 
 
 @pytest.fixture(scope="module")
 def outcome(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What the script in the window wrote when it was done."""
-    folder, user = tmp_path_factory.mktemp("window"), tmp_path_factory.mktemp("user")
-    shutil.rmtree(SHOTS, ignore_errors=True)
-    SHOTS.mkdir(parents=True)
-    blender, environment = os.environ["SKI_ADDON_BLENDER"], os.environ | {"BLENDER_USER_RESOURCES": str(user)}
-    install = [blender, "--command", "extension", "install-file", "-r", "user_default", "-e"]
-    install.append(str(Path(os.environ["SKI_ADDON_ZIP"]).resolve()))
-    subprocess.run(install, env=environment, timeout=180, check=True)
-    command = [blender, "--window-geometry", "0", "0", "1600", "1000", "--enable-event-simulate"]
-    command += ["--python", str(ROOT / "tests" / "gui" / "drive.py"), "--", str(folder)]
-    log = SHOTS / "blender.log"
-    with log.open("w") as stream:
-        process = subprocess.Popen(command, env=environment, stdout=stream, stderr=subprocess.STDOUT)
-        try:
-            end = time.monotonic() + 60 * MINUTES
-            while process.poll() is None and time.monotonic() < end:
-                take_screenshots(folder)
-                time.sleep(0.2)
-        finally:
-            process.kill()
-            process.wait()
-    assert (folder / "result.json").exists(), f"no result after {MINUTES} minutes:\n{log.read_text()[-2000:]}"
-    shutil.copy(folder / "result.json", SHOTS)
-    return json.loads((folder / "result.json").read_text())
+    return run_in_window("drive", tmp_path_factory.mktemp("window"), tmp_path_factory.mktemp("user"))
 
 
 def test_everything_was_done_by_mouse(outcome: dict[str, Any]) -> None:
@@ -136,4 +95,4 @@ SCREENS = ("tab", "skier", "presets", "simulating", "baked", "stopped", "undone"
 
 @pytest.mark.parametrize("name", [*(f"{i + 1}_{n}" for i, n in enumerate(SCREENS)), "11_gate_undone", "12_impossible"])
 def test_screenshot_was_taken(outcome: dict[str, Any], name: str) -> None:
-    assert (SHOTS / f"{name}.png").stat().st_size > 20_000
+    assert (shots_of("drive") / f"{name}.png").stat().st_size > 20_000
