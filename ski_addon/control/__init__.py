@@ -3,20 +3,24 @@
 from .baselines import FreeSkis, gains_of
 from .controller import Command, Controller
 from .dynamics import Dynamics
+from .effort import Effort, Solution
 from .formulation import Formulation, Problem
 from .gains import Gains, TaskGain
-from .solver import OsqpSolver, Solution
+from .small_program import SmallProgram
+from .solver import OsqpSolver
 from .tasks import TaskSet, progress_rate, rotation_error
 
 __all__ = [
     "Command",
     "Controller",
     "Dynamics",
+    "Effort",
     "Formulation",
     "FreeSkis",
     "Gains",
     "OsqpSolver",
     "Problem",
+    "SmallProgram",
     "Solution",
     "TaskGain",
     "TaskSet",

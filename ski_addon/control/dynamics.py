@@ -26,7 +26,9 @@ class Dynamics:
     `applied` (nv,) generalised air drag; `outside` (37,) a generalised force from outside as felt, which the controller
     reckons with and forward dynamics does not;
     `ski_jacobian` (2, 6, 37) and `ski_bias` (2, 6) of the ski centres, linear then angular, world axes;
-    `ski_velocity` (2, 6); `com`, `com_velocity` (3,); `momentum_matrix` (3, 37), `momentum_bias`, `momentum` (3,).
+    `ski_velocity` (2, 6), `ski_places` (2, 3), `ski_rotations` (2, 3, 3), world from ski; `com`, `com_velocity` (3,); `momentum_matrix` (3, 37), `momentum_bias`, `momentum` (3,).
+    `about_com` (6, 6) turns a generalised force on the root into force [N, world] and moment about the centre of mass
+    [N m]; `root_rows` (6, 37) are the inertia's root rows so turned.
     """
 
     def __init__(self, model: SkierModel, drag_factor: float = 0.0) -> None:
@@ -35,8 +37,10 @@ class Dynamics:
         `drag_factor` [1/m] times the squared speed is the air's deceleration of the centre of mass.
         """
         import mujoco
+        from scipy.linalg import lapack
 
         self._mj = mujoco
+        self._solve = lapack.dgesv  # numpy's own would share even four equations between threads, and wait for them
         self.model = model
         self.drag_factor = drag_factor
         self.data = model.new_data()
@@ -54,12 +58,16 @@ class Dynamics:
         self.outside = np.zeros(nb)
         self._bp_block = np.zeros((nb, len(pole)))
         self._pp_block = np.zeros((len(pole), len(pole)))
-        self._pole_coupling = np.zeros((len(pole), nb))
+        self._pole_right = np.zeros((len(pole), nb + 1), order="F")
         self.ski_jacobian = np.zeros((2, 6, nb))
         self.ski_bias = np.zeros((2, 6))
         self.ski_velocity = np.zeros((2, 6))
-        self._jac = np.zeros((6, nv))
-        self._jac_dot = np.zeros((6, nv))
+        self.ski_places, self.ski_rotations = np.zeros((2, 3)), np.zeros((2, 3, 3))
+        self._jac, self._jac_dot = np.zeros((12, nv)), np.zeros((12, nv))
+        self._ski_parts = [
+            (int(ski), *(jac[6 * i + k : 6 * i + k + 3] for jac in (self._jac, self._jac_dot) for k in (0, 3)))
+            for i, ski in enumerate(model.ski_body)
+        ]
         self.velocity = np.zeros(nb)
         d = self.data
         self.qpos, self.qvel = d.qpos, d.qvel
@@ -67,10 +75,11 @@ class Dynamics:
         self._qfrc_bias, self._qfrc_passive, self._subtree = d.qfrc_bias, d.qfrc_passive, d.subtree_com
         self.com = np.zeros(3)
         self.com_velocity = np.zeros(3)
-        self.momentum_matrix = np.zeros((3, nb))
         self.momentum_bias = np.zeros(3)
         self.momentum = np.zeros(3)
-        self._skew = np.zeros((3, 3))
+        self.about_com = np.eye(6)
+        self.root_rows = np.zeros((6, nb))
+        self.momentum_matrix = self.root_rows[3:]
 
     def update(self) -> None:
         """Recompute everything from `data.qpos` and `data.qvel`."""
@@ -82,7 +91,7 @@ class Dynamics:
         self.com_velocity /= self.model.mass
         self._apply_drag()
         self._eliminate_poles()
-        np.take(self.qvel, self.model.body_dof, out=self.velocity)
+        np.take(self.qvel, self.model.body_dof, out=self.velocity, mode="clip")
         self._update_skis()
         self._update_momentum()
 
@@ -93,11 +102,11 @@ class Dynamics:
 
     def ski_position(self, ski: int) -> np.ndarray:
         """World position (3,) [m] of the middle of a ski's base; 0 is left."""
-        return self._xpos[self.model.ski_body[ski]]
+        return self.ski_places[ski]
 
     def ski_rotation(self, ski: int) -> np.ndarray:
         """World rotation (3, 3) of a ski; 0 is left."""
-        return self._xmat[self.model.ski_body[ski]]
+        return self.ski_rotations[ski]
 
     def body_position(self, body: int) -> np.ndarray:
         """World position (3,) [m] of a MuJoCo body's frame."""
@@ -130,40 +139,42 @@ class Dynamics:
         self.applied *= -self.drag_factor * math.sqrt(velocity @ velocity)
 
     def _eliminate_poles(self) -> None:
-        flat, pole, body = self._flat, self.model.pole_dof, self.model.body_dof
-        np.take(flat, self._bb, out=self.inertia.reshape(-1))
-        np.take(flat, self._bp, out=self._bp_block.reshape(-1))
-        np.take(flat, self._pp, out=self._pp_block.reshape(-1))
-        net = self._qfrc_bias - self._qfrc_passive - self.applied
-        inverse = np.linalg.inv(self._pp_block)
-        np.dot(inverse, self._bp_block.T, out=self._pole_coupling)
-        self.inertia -= self._bp_block @ self._pole_coupling
-        np.take(net, body, out=self.bias)
-        self.bias -= self._bp_block @ (inverse @ net[pole])
+        flat, right = self._flat, self._pole_right
+        np.take(flat, self._bb, out=self.inertia.reshape(-1), mode="clip")
+        np.take(flat, self._bp, out=self._bp_block.reshape(-1), mode="clip")
+        np.take(flat, self._pp, out=self._pp_block.reshape(-1), mode="clip")
+        net = self._qfrc_bias - self._qfrc_passive
+        net -= self.applied
+        right[:, :-1] = self._bp_block.T
+        np.take(net, self.model.pole_dof, out=right[:, -1], mode="clip")
+        _, _, coupling, _ = self._solve(self._pp_block, right)
+        reduced = np.dot(self._bp_block, coupling)
+        self.inertia -= reduced[:, :-1]
+        np.take(net, self.model.body_dof, out=self.bias, mode="clip")
+        self.bias -= reduced[:, -1]
 
     def _update_skis(self) -> None:
-        mj, m, d = self._mj, self.model.mujoco, self.data
-        jac, jac_dot, body = self._jac, self._jac_dot, self.model.body_dof
-        for i, ski in enumerate(self.model.ski_body.tolist()):
-            point = self._xpos[ski]
-            mj.mj_jac(m, d, jac[:3], jac[3:], point, ski)
-            mj.mj_jacDot(m, d, jac_dot[:3], jac_dot[3:], point, ski)
-            np.take(jac, body, axis=1, out=self.ski_jacobian[i])
-            np.dot(jac, self.qvel, out=self.ski_velocity[i])
-            np.dot(jac_dot, self.qvel, out=self.ski_bias[i])
+        mj, m, d, skis = self._mj, self.model.mujoco, self.data, self.model.ski_body
+        np.take(self._xpos, skis, axis=0, out=self.ski_places, mode="clip")
+        np.take(self._xmat, skis, axis=0, out=self.ski_rotations, mode="clip")
+        for point, (ski, *parts) in zip(self.ski_places, self._ski_parts, strict=True):
+            mj.mj_jac(m, d, parts[0], parts[1], point, ski)
+            mj.mj_jacDot(m, d, parts[2], parts[3], point, ski)
+        np.take(self._jac, self.model.body_dof, axis=1, out=self.ski_jacobian.reshape(12, -1), mode="clip")
+        np.dot(self._jac, self.qvel, out=self.ski_velocity.reshape(-1))
+        np.dot(self._jac_dot, self.qvel, out=self.ski_bias.reshape(-1))
 
     def _update_momentum(self) -> None:
         inertia, bias = self.inertia, self.bias
         self.com[:] = self._subtree[1]
-        x, y, z = (self.com - self._xpos[1]).tolist()
-        skew = self._skew
-        skew[0, 1], skew[0, 2], skew[1, 2] = -z, y, -x
-        skew[1, 0], skew[2, 0], skew[2, 1] = z, -y, x
-        rotation = self._xmat[1]
-        self.momentum_matrix[:] = rotation @ inertia[3:6] - skew @ inertia[:3]
-        known = self.applied
-        self.momentum_bias[:] = rotation @ (bias[3:6] + known[3:6]) - skew @ (bias[:3] + known[:3])
-        self.momentum[:] = rotation @ (self._full[3:6] @ self.qvel) - skew @ (self._full[:3] @ self.qvel)
+        (cx, cy, cz), (px, py, pz) = self.com.tolist(), self._xpos[1].tolist()
+        x, y, z = cx - px, cy - py, cz - pz
+        about = self.about_com
+        about[3:, :3] = (0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0)
+        about[3:, 3:] = self._xmat[1]
+        np.dot(about, inertia[:6], out=self.root_rows)
+        np.dot(about[3:], bias[:6] + self.applied[:6], out=self.momentum_bias)
+        np.dot(about[3:], self._full[:6] @ self.qvel, out=self.momentum)
 
     @property
     def com_bias(self) -> np.ndarray:

@@ -21,20 +21,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body import SkierModel
-from ..gravity import STANDARD_GRAVITY
-from ..snow import Snow, contact_points, edge_bearing
+from ..snow import Snow, contact_points
 from .dynamics import Dynamics
-from .gains import (
-    ACCELERATION_LIMIT,
-    EDGE_SHEAR_RATIO,
-    END_STOP_STRENGTH,
-    FORCE_LIMIT_WEIGHTS,
-    FORCE_UNIT,
-    JOINT_LIMIT_TIME,
-    LIFTING_EDGE_WEIGHTS,
-    RANGE_MARGIN,
-    Gains,
-)
+from .effort import Effort, Solution
+from .gains import FORCE_UNIT, Gains
+from .hinge_ranges import HingeRanges
+from .snow_patch import ForceBounds
+from .task_weights import posture_weights, ski_weights
 from .tasks import Desired
 
 ROOT_SCALE = 0.01
@@ -88,20 +81,12 @@ class Formulation:
 
     def _layout_tasks(self) -> None:
         gains, model = self.gains, self.model
-        length, width = model.skeleton.ski_length, model.skeleton.ski_width
-        corner = gains.ski.weight
-        ski = [4 * corner] * 3 + [gains.edging.weight, corner * length**2, corner * (length**2 + width**2)]
+        ski = ski_weights(gains, model.skeleton.ski_length, model.skeleton.ski_width)
         weights = np.array([*ski, *ski, *[gains.com.weight] * 2, *[gains.angular_momentum.weight] * 3])
         self._task_scale = np.sqrt(weights)
         self._task_rows = np.zeros((len(weights), self.accelerations))
         self._task_target = np.zeros(len(weights))
-        posture = np.full(self.accelerations, gains.pose.weight)
-        posture[:3] = gains.root_position
-        posture[3:6] = gains.pelvis.weight
-        legs = np.isin(model.body_dof, model.leg_dof)
-        posture[legs] = gains.leg_pose.weight
-        self._posture = posture
-        self._legs = np.flatnonzero(legs)
+        self._posture, self._legs = posture_weights(model, gains)
         self._posture_target = np.zeros(self.accelerations)
 
     def _layout_hessian(self) -> None:
@@ -149,17 +134,12 @@ class Formulation:
     def _layout_bounds(self) -> None:
         n, hinges, model = self.accelerations, self.hinges, self.model
         self._lower, self._upper = np.zeros(self.rows), np.zeros(self.rows)
-        self.torque_lower, self.torque_upper = model.torque_lower.copy(), model.torque_upper.copy()
-        self._joint_lower, self._joint_upper = model.joint_lower + RANGE_MARGIN, model.joint_upper - RANGE_MARGIN
+        self._ranges = HingeRanges(model)
+        self.torque_lower, self.torque_upper = self._ranges.torque_lower, self._ranges.torque_upper
         self._end_stops = np.zeros((2, hinges))
-        self._end_stop = END_STOP_STRENGTH * np.maximum(-model.torque_lower, model.torque_upper)
         self.torque_rows, self.hinge_rows = slice(6, n), slice(n, n + hinges)
-        self._snow_rows = slice(n + hinges, self.rows)
-        weight = model.mass * STANDARD_GRAVITY / FORCE_UNIT
-        self._normal_cap = FORCE_LIMIT_WEIGHTS * weight
-        self._shear_cap = EDGE_SHEAR_RATIO * weight
-        self._grip = self.snow.shear_limit / FORCE_UNIT / self.segments
-        self._lifting_cap = LIFTING_EDGE_WEIGHTS * weight / self.segments
+        bounds = (bound[n + hinges :] for bound in (self._lower, self._upper))
+        self._force_bounds = ForceBounds(model, self.snow, self.segments, *bounds)
 
     # -- build, each step --------------------------------------------------------------------------------------------
 
@@ -180,7 +160,7 @@ class Formulation:
         self._build_cost(dynamics, desired, leg_freedom)
         self._build_hinge_bounds(dynamics)
         self._build_constraints(dynamics)
-        self._build_snow_bounds(edge_angle)
+        self._force_bounds.set(edge_angle)
         return Problem(self._hessian, self._gradient, self._constraints, self._lower, self._upper, self._end_stops)
 
     def _build_snow(self, dynamics: Dynamics, normal: np.ndarray) -> None:
@@ -241,36 +221,10 @@ class Formulation:
         upper[6:n] = (self.torque_upper - bias[6:]) * scale
 
     def _build_hinge_bounds(self, dynamics: Dynamics) -> None:
-        model, horizon = self.model, JOINT_LIMIT_TIME
-        reached = dynamics.qpos[model.actuated_qpos] + horizon * dynamics.velocity[6:]
-        factor = 4.0 / horizon**2  # critically damped: a hinge comes to rest at its end and does not swing past it
-        lower, upper = self._lower[self.hinge_rows], self._upper[self.hinge_rows]
-        np.clip((self._joint_lower - reached) * factor, -ACCELERATION_LIMIT, ACCELERATION_LIMIT, out=lower)
-        np.clip((self._joint_upper - reached) * factor, -ACCELERATION_LIMIT, ACCELERATION_LIMIT, out=upper)
-        stops = self._end_stops
-        np.multiply(self._end_stop, reached > self._joint_upper, out=stops[0])
-        np.multiply(self._end_stop, reached < self._joint_lower, out=stops[1])
-        np.subtract(model.torque_lower, stops[0], out=self.torque_lower)
-        np.add(model.torque_upper, stops[1], out=self.torque_upper)
-        stops *= self._torque_scale
-
-    def _build_snow_bounds(self, edge_angle: np.ndarray) -> None:
-        segments = self.segments
-        lower = self._lower[self._snow_rows].reshape(2, 2, 2, segments)  # ski, normal or side, left or right edge
-        upper = self._upper[self._snow_rows].reshape(2, 2, 2, segments)
-        for ski, angle in enumerate(edge_angle.tolist()):
-            bearing = edge_bearing(angle)
-            lifted = min(bearing)
-            # the ski's grip is shared by its edges; an edge is pushed across the ski from its outer side only, but
-            # while the other edge still bears the ski is flat and can be pushed both ways
-            grip = self._grip / (1.0 + lifted)
-            most = min(self._shear_cap, grip)
-            slight = most if lifted == 1.0 else min(self._lifting_cap, grip) * lifted
-            for edge in range(2):
-                upper[ski, 0, edge] = self._normal_cap if bearing[edge] == 1.0 else bearing[edge] * self._lifting_cap
-                side = most if bearing[edge] == 1.0 else slight
-                upper[ski, 1, edge] = side if edge == 0 else slight
-                lower[ski, 1, edge] = -side if edge == 1 else -slight
+        ranges = self._ranges
+        ranges.update(dynamics)
+        self._lower[self.hinge_rows], self._upper[self.hinge_rows] = ranges.lower, ranges.upper
+        np.multiply(ranges.end_stops, self._torque_scale, out=self._end_stops)
 
     # -- read a solution ---------------------------------------------------------------------------------------------
 
@@ -305,6 +259,23 @@ class Formulation:
         """Return the snow's force on each ski (2, 3) [N, world]."""
         forces = unknowns[self.accelerations :].reshape(2, self.per_ski)
         return np.einsum("sij,sj->si", self.snow_map[:, :3], forces)
+
+    def effort(self, dynamics: Dynamics, solution: Solution) -> Effort:
+        """Return what a solution takes; torques are cut to their limits, which a rough solution may pass a little."""
+        x, model = solution.unknowns, self.model
+        torque = np.clip(self.torques(dynamics, x), self.torque_lower, self.torque_upper)
+        edge_normal, edge_side = self.edge_forces(x)
+        return Effort(
+            torque=torque,
+            end_stop=torque - np.clip(torque, model.torque_lower, model.torque_upper),
+            snow=self.snow_force(x),
+            edge_normal=edge_normal,
+            edge_side=edge_side,
+            load_moment=self.load_moments(x),
+            ski_force=self.ski_forces(x),
+            root_residual=self.root_residual(dynamics, x),
+            solution=solution,
+        )
 
 
 def _ancestors(parent: np.ndarray, body: int) -> set[int]:

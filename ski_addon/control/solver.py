@@ -7,10 +7,10 @@ scaling, which would be redone at every update, stays off.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from .effort import Solution
 from .formulation import Formulation, Problem
 
 INFEASIBLE = (3, 4, 5, 6)
@@ -31,18 +31,6 @@ HARD_ITERATIONS = 40000
 """Iterations of further attempts, from a cold start."""
 UNBOUNDED = 1e6
 """A bound [rad/s^2] that never binds; OSQP's early stopping dislikes infinities."""
-
-
-@dataclass(frozen=True)
-class Solution:
-    """`unknowns` (n,) of a program, `iterations` used, `status` 0 when converged and OSQP's status value otherwise;
-    `attempts` counts solves.
-    """
-
-    unknowns: np.ndarray
-    iterations: int
-    status: int
-    attempts: int
 
 
 class OsqpSolver:

@@ -77,7 +77,11 @@ class TaskSet:
         self.motion = Motion(reference)
         self._columns = reference.columns
         self._joint_address = dynamics.model.actuated_qpos
-        self._reference_velocity = np.zeros(len(dynamics.model.body_dof))
+        self._bodies = [*dynamics.model.ski_body.tolist(), 1]  # the root body is the pelvis
+        edging, ski = gains.edging, gains.ski
+        self._turn_gains = np.array([(edging.kp, ski.kp, ski.kp), (edging.kd, ski.kd, ski.kd), (1.0, 1.0, 1.0)])
+        self._turns = np.zeros((2, 3, 3))
+        self._off = np.zeros(len(dynamics.model.body_dof) - 3)
 
     def update(self, sample: np.ndarray, rate: float) -> Desired:
         """Return the desired accelerations at reference `sample` (3, width) and progress `rate`."""
@@ -86,40 +90,45 @@ class TaskSet:
     def follow(self, motion: Motion) -> Desired:
         """Return the desired accelerations that follow `motion`."""
         value, velocity, acceleration = motion.value, motion.velocity, motion.acceleration
-        quaternions = value[self._columns["quaternion"]].tolist()
-        for ski in range(2):
-            self._ski(ski, value, velocity, acceleration, motion.spin, motion.spin_rate, quaternions)
+        left, right, pelvis = self._rotation_errors(value)
+        self._skis(value, velocity, acceleration, motion, (left, right))
         self._com(value, velocity, acceleration)
         self._pose(value, velocity, acceleration)
-        self._pelvis(motion.spin[6:9], motion.spin_rate[6:9], quaternions[8:12])
-        self._angular_momentum(velocity, motion.spin[6:9])
+        self._pelvis(motion.spin[6:], motion.spin_rate[6:], pelvis)
+        self._angular_momentum(velocity, motion.spin[6:])
         return self.desired
 
-    def _ski(
+    def _rotation_errors(self, value: np.ndarray) -> list[tuple[float, float, float]]:
+        """Return the rotation vectors [rad, world] that turn left ski, right ski and pelvis to where they should be."""
+        planned = value[self._columns["quaternion"]].tolist()
+        present = self.dynamics.xquat[self._bodies].tolist()
+        return [rotation_error(planned[4 * i : 4 * i + 4], present[i]) for i in range(3)]
+
+    def _skis(
         self,
-        ski: int,
         value: np.ndarray,
         velocity: np.ndarray,
         acceleration: np.ndarray,
-        spin: np.ndarray,
-        spin_rate: np.ndarray,
-        quaternions: list[float],
+        motion: Motion,
+        turn_errors: tuple[tuple[float, float, float], ...],
     ) -> None:
-        dynamics, gains, desired = self.dynamics, self.gains, self.desired
-        start = self._columns["ski_position"].start + 3 * ski
-        place, turn = slice(start, start + 3), slice(3 * ski, 3 * ski + 3)
-        offset, turn_error = desired.ski_offset[ski], desired.ski_turn[ski]
-        np.subtract(value[place], dynamics.ski_position(ski), out=offset)
-        current = dynamics.xquat[dynamics.model.ski_body[ski]].tolist()
-        turn_error[:] = rotation_error(quaternions[4 * ski : 4 * ski + 4], current)
-        moving = dynamics.ski_velocity[ski]
-        linear = gains.ski.kp * offset + gains.ski.kd * (velocity[place] - moving[:3]) + acceleration[place]
-        axes = desired.ski_axes[ski]
-        axes[:] = dynamics.ski_rotation(ski)
-        error, slip = turn_error @ axes, (spin[turn] - moving[3:]) @ axes
-        desired.ski[ski, :3] = linear
-        desired.ski[ski, 3:] = gains.ski.kp * error + gains.ski.kd * slip + spin_rate[turn] @ axes
-        desired.ski[ski, 3] += (gains.edging.kp - gains.ski.kp) * error[0] + (gains.edging.kd - gains.ski.kd) * slip[0]
+        dynamics, gain, desired, turns = self.dynamics, self.gains.ski, self.desired, self._turns
+        place, moving = self._columns["ski_position"], dynamics.ski_velocity
+        np.subtract(value[place].reshape(2, 3), dynamics.ski_places, out=desired.ski_offset)
+        desired.ski_turn[:] = turn_errors
+        desired.ski_axes[:] = dynamics.ski_rotations
+        linear = velocity[place].reshape(2, 3) - moving[:, :3]
+        linear *= gain.kd
+        linear += gain.kp * desired.ski_offset
+        linear += acceleration[place].reshape(2, 3)
+        desired.ski[:, :3] = linear
+        turns[:, 0] = desired.ski_turn
+        np.subtract(motion.spin[:6].reshape(2, 3), moving[:, 3:], out=turns[:, 1])
+        turns[:, 2] = motion.spin_rate[:6].reshape(2, 3)
+        own = np.matmul(turns, desired.ski_axes)  # in the skis' own axes: error, slip, rate
+        own *= self._turn_gains
+        np.add(own[:, 0], own[:, 1], out=desired.ski[:, 3:])
+        desired.ski[:, 3:] += own[:, 2]
 
     def _com(self, value: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> None:
         columns, dynamics, gain, desired = self._columns, self.dynamics, self.gains.com, self.desired
@@ -136,22 +145,22 @@ class TaskSet:
             gain.kp * error + gain.kd * (velocity[columns] - dynamics.velocity[6:]) + acceleration[columns]
         )
 
-    def _pelvis(self, spin: np.ndarray, spin_rate: np.ndarray, quaternion: list[float]) -> None:
+    def _pelvis(self, spin: np.ndarray, spin_rate: np.ndarray, error: tuple[float, float, float]) -> None:
         dynamics, gain = self.dynamics, self.gains.pelvis
-        error = np.array(rotation_error(quaternion, dynamics.xquat[1].tolist()))
-        rotation = dynamics.root_rotation
+        wanted = gain.kd * spin
+        wanted += spin_rate
+        wanted += gain.kp * np.array(error)
         # the root's angular velocity and acceleration are in its own axes
-        self.desired.pelvis[:] = (
-            gain.kp * error + gain.kd * spin + spin_rate
-        ) @ rotation - gain.kd * dynamics.velocity[3:6]
+        np.dot(wanted, dynamics.root_rotation, out=self.desired.pelvis)
+        self.desired.pelvis -= gain.kd * dynamics.velocity[3:6]
 
     def _angular_momentum(self, velocity: np.ndarray, spin: np.ndarray) -> None:
-        dynamics, planned = self.dynamics, self._reference_velocity
-        planned[:3] = dynamics.velocity[:3]
-        planned[3:6] = spin @ dynamics.root_rotation
-        planned[6:] = velocity[self._columns["joints"]]
-        wanted = dynamics.momentum_matrix @ (planned - dynamics.velocity)
-        self.desired.angular_momentum_rate[:] = self.gains.angular_momentum.kd * wanted
+        dynamics, off, rate = self.dynamics, self._off, self.desired.angular_momentum_rate
+        np.dot(spin, dynamics.root_rotation, out=off[:3])
+        off[3:] = velocity[self._columns["joints"]]
+        off -= dynamics.velocity[3:]
+        np.dot(dynamics.momentum_matrix[:, 3:], off, out=rate)
+        rate *= self.gains.angular_momentum.kd
 
 
 def rotation_error(target: list[float], current: list[float]) -> tuple[float, float, float]:

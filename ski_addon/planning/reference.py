@@ -56,6 +56,7 @@ class Reference:
         table = np.hstack(list(channels.values()))
         edges = np.concatenate(([0], np.cumsum([block.shape[1] for block in channels.values()])))
         self.columns = {name: slice(int(a), int(b)) for name, a, b in zip(channels, edges, edges[1:], strict=False)}
+        self.width = table.shape[1]
         spline = CubicSpline(self.knots, table)
         self._coefficients = np.ascontiguousarray(spline.c.transpose(1, 0, 2))  # (n - 1, 4, width), cubic first
         self._starts = self.knots.tolist()

@@ -82,7 +82,7 @@ class FallWatch:
         if command.rate < STALLED and float(command.sample[0, self._speed][0]) > GLIDING:
             why = "friction and slope no longer carry it forward"
             return Fall("fell", time, "the skier came to a stop", progress, why)
-        if command.solution.status != 0:
+        if command.effort.solution.status != 0:
             return Fall("fell", time, "the skier lost control", progress, self._why(time, command))
         return None
 
@@ -116,6 +116,6 @@ class FallWatch:
         held = 0.0 if self._saturated_since is None else time - self._saturated_since
         if held >= TELLING_TIME:
             return f"{self._saturated_hinge} had been at its torque limit for {held:.2f} s"
-        if command.solution.status != 0:
+        if command.effort.solution.status != 0:
             return "no torques and snow forces were found that follow the plan"
         return "the centre of mass left the range the skis can support"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,46 +11,61 @@ from .recording import COUNTS, SHAPES, Recording
 
 
 class Recorder:
-    """Append-only store of steps; `add` takes one value for every name of `SHAPES` and `COUNTS`."""
+    """Append-only store of steps: `add` what a step has at hand, `fill` in what is worked out for many at once."""
 
-    def __init__(self, expected: int) -> None:
-        """Reserve room for about `expected` steps."""
+    def __init__(self, expected: int, numbers: Iterable[str] = (), arrays: Iterable[str] = ()) -> None:
+        """Reserve room for about `expected` steps, whose `add` brings the values called `numbers` and `arrays`."""
         widths = [int(np.prod(shape, dtype=int)) for shape in SHAPES.values()]
         edges = np.concatenate(([0], np.cumsum(widths)))
-        self._slices = [slice(int(a), int(b)) for a, b in zip(edges, edges[1:], strict=False)]
-        self._reals = np.empty((max(expected, 64), int(edges[-1])))
-        self._counts = np.empty((max(expected, 64), len(COUNTS)), dtype=np.int32)
+        self._slices = {
+            name: slice(int(a), int(b)) for name, a, b in zip(SHAPES, edges, edges[1:], strict=False)
+        }
+        self._numbers = [self._slices[name].start for name in numbers]
+        self._arrays = [self._slices[name] for name in arrays]
+        self._reals = np.zeros((max(expected, 64), int(edges[-1])))
+        self._counts = np.zeros((max(expected, 64), len(COUNTS)), dtype=np.int32)
         self.count = 0
 
-    def add(self, reals: tuple[Any, ...], counts: tuple[int, ...]) -> None:
-        """Append one step: values in the order of `SHAPES` and of `COUNTS`."""
+    def add(self, numbers: tuple[float, ...], arrays: tuple[np.ndarray, ...], counts: tuple[int, ...]) -> None:
+        """Append one step: its numbers, its arrays, each of any shape, and its `COUNTS`."""
         if self.count == len(self._reals):
-            self._reals = np.concatenate((self._reals, np.empty_like(self._reals)))
-            self._counts = np.concatenate((self._counts, np.empty_like(self._counts)))
+            self._reals = np.concatenate((self._reals, np.zeros_like(self._reals)))
+            self._counts = np.concatenate((self._counts, np.zeros_like(self._counts)))
         row = self._reals[self.count]
-        for place, value in zip(self._slices, reals, strict=True):
-            row[place] = value.reshape(-1) if isinstance(value, np.ndarray) else value
+        for column, number in zip(self._numbers, numbers, strict=True):
+            row[column] = number
+        for place, array in zip(self._arrays, arrays, strict=True):
+            row[place] = array if array.ndim == 1 else array.reshape(-1)
         self._counts[self.count] = counts
         self.count += 1
+
+    def fill(self, begin: int, columns: Mapping[str, np.ndarray]) -> None:
+        """Set more columns (n, ...) of the n steps from `begin` on."""
+        for name, values in columns.items():
+            if name in COUNTS:
+                self._counts[begin : begin + len(values), list(COUNTS).index(name)] = values
+            else:
+                self._reals[begin : begin + len(values), self._slices[name]] = values.reshape(len(values), -1)
+
+    def rows(self, name: str, begin: int) -> np.ndarray:
+        """Return a view of the real numbers recorded under `name` from step `begin` on, (n, ...)."""
+        place = self._slices[name]
+        return self._reals[begin : self.count, place].reshape(self.count - begin, *SHAPES[name])
 
     def refill(self, recording: Recording, count: int) -> None:
         """Begin with the first `count` steps of `recording`."""
         missing = count - len(self._reals)
         if missing > 0:
-            self._reals = np.empty((2 * count, self._reals.shape[1]))
-            self._counts = np.empty((2 * count, len(COUNTS)), dtype=np.int32)
-        for name, place in zip(SHAPES, self._slices, strict=True):
-            self._reals[:count, place] = getattr(recording, name)[:count].reshape(count, -1)
-        for column, name in enumerate(COUNTS):
-            self._counts[:count, column] = getattr(recording, name)[:count]
+            self._reals = np.zeros((2 * count, self._reals.shape[1]))
+            self._counts = np.zeros((2 * count, len(COUNTS)), dtype=np.int32)
+        self.fill(0, {name: getattr(recording, name)[:count] for name in (*SHAPES, *COUNTS)})
         self.count = count
 
     def column(self, name: str) -> np.ndarray:
         """Return what has been recorded under `name`, (count, ...)."""
         if name in COUNTS:
             return self._counts[: self.count, list(COUNTS).index(name)].astype(COUNTS[name])
-        place = self._slices[list(SHAPES).index(name)]
-        return self._reals[: self.count, place].reshape(self.count, *SHAPES[name]).copy()
+        return self.rows(name, 0).copy()
 
     def recording(self, header: dict[str, Any]) -> Recording:
         """Return everything recorded so far under `header`."""

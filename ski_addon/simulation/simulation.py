@@ -20,9 +20,8 @@ from ..spec import RunSpec
 from ..terrain import Terrain
 from .falls import Fall, FallWatch
 from .pushes import Pushes
-from .recorder import Recorder
 from .recording import Recording
-from .support import SkiGauge
+from .step_log import StepLog, present_errors
 from .versions import library_versions
 
 Progress = Callable[[float, str], "bool | None"]
@@ -54,6 +53,7 @@ class Simulation:
             spec.simulation.segments,
             gains_of(spec.technique.controller),
             self.time_step,
+            solver=spec.simulation.solver,
             replans=_replans(spec),
             by_clock=spec.technique.equations in BY_CLOCK or not steered,
             free_skis=None if steered else FreeSkis(self.dynamics, self.snow, terrain),
@@ -67,9 +67,7 @@ class Simulation:
         self.step_seconds: list[float] = []
         self._watch = FallWatch(self.dynamics, self.reference, terrain, on_track=steered)
         self._pushes = Pushes(spec.push, model, self.time_step)
-        self._recorder = Recorder(self.step_total + 256)
-        self._gauge = SkiGauge(self.dynamics, self.reference)
-        self._labels = (plan.phase.tolist(), plan.turn.tolist())
+        self._log = StepLog(plan, model, self.reference, self.step_total + 256)
         self._start()
 
     @property
@@ -100,21 +98,19 @@ class Simulation:
             return
         dynamics.update()
         command = self.controller.step(self.progress)
-        self.arc_length = float(command.sample[0, self.reference.columns["arc_length"]][0])
-        muscles = command.torque - command.end_stop
+        effort, value, columns = command.effort, command.sample[0], self.reference.columns
+        self.arc_length = float(value[columns["arc_length"]][0])
+        muscles = effort.torque - effort.end_stop
         ratio = np.maximum(muscles / self.model.torque_upper, muscles / self.model.torque_lower)
         self._watch.note_torques(now, ratio)
-        value, columns = command.sample[0], self.reference.columns
-        desired = self.controller.desired
-        followed = self._gauge.corner_error(desired.ski_offset, desired.ski_turn)
-        track_offset = self._gauge.track_offset(value)
-        if self.step_done % CHECK_INTERVAL == 0 or command.solution.status != 0:
-            self.fall = self._watch.check(now, self.arc_length, command, followed, track_offset[0])
+        if self.step_done % CHECK_INTERVAL == 0 or effort.solution.status != 0:
+            errors = present_errors(self._log, command, self.controller)
+            self.fall = self._watch.check(now, self.arc_length, command, *errors)
         self._pushes.update(self.step_done, dynamics, value[columns["tangent"]], value[columns["normal"]])
-        self._record(now, command, ratio, followed, track_offset)
+        self._log.add(now, self.progress, command, ratio, self._pushes.force, self.controller)
         if self.fall is not None:
             return
-        acceleration = dynamics.accelerations(command.torque, command.snow, self._pushes.generalised)
+        acceleration = dynamics.accelerations(effort.torque, effort.snow, self._pushes.generalised)
         dynamics.integrate(acceleration, self.time_step)
         self.progress += command.rate * self.time_step
         self.step_done += 1
@@ -126,11 +122,11 @@ class Simulation:
         """
         if status is None:
             status = "finished" if self.finished else self.fall.status if self.fall else "cancelled"
-        return self._recorder.recording(self._header(status))
+        return self._log.recording(self._header(status))
 
     def restore(self, recording: Recording, index: int, progress: float) -> None:
         """Go on from the state at step `index` of `recording`, so far [s] into the plan; see `resuming.resume`."""
-        self._recorder.refill(recording, index)
+        self._log.refill(recording, index)
         self.step_done, self.progress = index, progress
         self.finished = progress >= self.plan.duration
         self.arc_length = float(recording.arc_length[index])
@@ -149,62 +145,6 @@ class Simulation:
         dynamics.update()
         velocity[:3] = slope[columns["com"]] - dynamics.com_velocity
         dynamics.qvel[:] = velocity
-
-    def _record(
-        self, now: float, command: Command, ratio: np.ndarray, followed: float, track_offset: tuple[float, float]
-    ) -> None:
-        dynamics, columns, value = self.dynamics, self.reference.columns, command.sample[0]
-        balance, model = self.controller.balance, self.model
-        ski_error = self._gauge.planned_error(value) if balance.replanned or self.controller.slide.active else followed
-        astray = dynamics.com - value[columns["com"]]
-        *zero_moment_point, border = self._gauge.zero_moment_point(command, value[columns["normal"]])
-        place = self.reference.interval(self.progress)
-        normal, left = value[columns["normal"]], value[columns["across"]]
-        planned = value[columns["ski_position"]]
-        aside = 0.5 * (dynamics.ski_position(0) + dynamics.ski_position(1) - planned[:3] - planned[3:])
-        over = dynamics.com - value[columns["track_position"]] - aside  # from the skis, wherever they are
-        hinges = dynamics.qpos[model.actuated_qpos]
-        margin = min(float((hinges - model.joint_lower).min()), float((model.joint_upper - hinges).min()))
-        solution = command.solution
-        self._recorder.add(
-            (
-                now,
-                self.arc_length,
-                self.progress,
-                math.sqrt(dynamics.com_velocity @ dynamics.com_velocity),
-                dynamics.qpos,
-                dynamics.qvel,
-                command.torque,
-                command.ski_force,
-                command.edge_normal,
-                command.edge_side,
-                math.atan2(over @ left, over @ normal),
-                command.edge_angle,
-                value[columns["edge_angle"]],
-                dynamics.com,
-                value[columns["com"]],
-                ski_error,
-                math.sqrt(astray @ astray),
-                float(value[columns["turn_phase"]][0]),
-                float(value[columns["curvature"]][0]),
-                value[columns["track_position"]],
-                value[columns["tangent"]],
-                normal,
-                command.root_residual,
-                ratio,
-                margin,
-                self._pushes.force,
-                track_offset,
-                balance.steering.offset,
-                balance.margin,
-                zero_moment_point,
-                border,
-                balance.push,
-                float(value[columns["steering"]][0]),
-                command.end_stop,
-            ),
-            (self._labels[0][place], self._labels[1][place], solution.iterations, solution.status, solution.attempts),
-        )
 
     def _header(self, status: str) -> dict[str, Any]:
         skeleton = self.model.skeleton

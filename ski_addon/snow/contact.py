@@ -39,6 +39,14 @@ def edge_bearing(edge_angle: float) -> tuple[float, float]:
     return (1.0, lifted) if edge_angle > 0.0 else (lifted, 1.0)
 
 
+def edge_bearings(edge_angle: np.ndarray) -> np.ndarray:
+    """Return `edge_bearing` of many angles (...) [rad]: (..., 2), left then right."""
+    x = np.clip((np.abs(edge_angle) - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0, 1.0)
+    lifted = 1.0 - x * x * (3.0 - 2.0 * x)
+    to_left = edge_angle > 0.0
+    return np.stack((np.where(to_left, 1.0, lifted), np.where(to_left, lifted, 1.0)), axis=-1)
+
+
 def lift_slope(edge_angle: float, width: float) -> tuple[float, float]:
     """Return `edge_lift` [m] of one angle [rad] and its derivative [m/rad]."""
     sine = math.sin(edge_angle)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .fields import number, text, whole
+from .fields import choice, number, text, whole
 from .records import record
 
 
@@ -13,6 +13,14 @@ class SimulationSpec:
     time_step: float = number(0.001, 0.0005, 0.005, "s", "Time step", "Length of a physics step", advanced=True)
     segments: int = whole(5, 2, 20, "per edge", "Edge segments", "Snow contact points on each ski edge", advanced=True)
     seed: int = whole(0, 0, 2**31 - 1, "", "Seed", "Seed of every random number", advanced=True)
+    solver: str = choice(
+        "small",
+        ("small", "osqp"),
+        "Solver",
+        "How each step's program is solved: small = exactly by a small system, OSQP only where a muscle or hinge is at "
+        "its limit; osqp = always by OSQP, slower, to compare with",
+        advanced=True,
+    )
 
 
 @record(frozen=True)

@@ -20,6 +20,9 @@ from tests.control.naive_program import NaiveProgram
 from tests.ski_runs import COARSE, FAST, WEAK, default_model, planned, random_configuration, simulated
 
 
+PLAIN = {"simulation.solver": "osqp"}
+
+
 @dataclass(frozen=True)
 class Recorded:
     """A step's program as it was built, as a dense one, and what the solver answered."""
@@ -46,7 +49,7 @@ def dense(formulation: Formulation, problem: Problem) -> NaiveProgram:
 def bank(weak: bool) -> tuple[Formulation, tuple[Recorded, ...]]:
     """Programs at recorded states of a run at 12 m/s and 42 degrees of lean, a strong skier's or a weak one's."""
     # states are set by hand here: a skier who steers to stay up would feel a push at every leap from state to state
-    changes = WEAK if weak else {**FAST, "technique.balance": "tracking"}
+    changes = PLAIN | (WEAK if weak else {**FAST, "technique.balance": "tracking"})
     recording, simulation = simulated("paper_main", changes), start_simulation(planned("paper_main", changes))
     controller, dynamics = simulation.controller, simulation.dynamics
     recorded = recorded_programs(controller)
@@ -74,7 +77,7 @@ def recorded_programs(controller: Controller) -> list[Recorded]:
 def steered_bank() -> tuple[Formulation, list[Recorded]]:
     """Every twentieth step that is re-planned after a push of 150 N in the first turn."""
     push = PushSpec("abdomen", "left", 150.0, 0.3, 0.3)
-    simulation = start_simulation(planned("paper_main", {**COARSE, "push": (push,)}))
+    simulation = start_simulation(planned("paper_main", {**PLAIN, **COARSE, "push": (push,)}))
     controller = simulation.controller
     recorded, steered = recorded_programs(controller), []
     while simulation.step_done < 800 and simulation.advance(1):
@@ -192,7 +195,7 @@ def racing(speed: float, end_stops: bool = True) -> tuple[Formulation, Problem]:
     dynamics.qvel[model.actuated_dof] = speed
     dynamics.update()
     strength = END_STOP_STRENGTH if end_stops else 0.0
-    with mock.patch("ski_addon.control.formulation.END_STOP_STRENGTH", strength):
+    with mock.patch("ski_addon.control.hinge_ranges.END_STOP_STRENGTH", strength):
         formulation = Formulation(model, Snow.of(SnowSpec(), SkierSpec()), Gains(), 5)
     desired = Desired()
     desired.ski_axes[:] = np.eye(3)
