@@ -26,7 +26,8 @@ class Dynamics:
     `applied` (nv,) generalised air drag; `outside` (37,) a generalised force from outside as felt, which the controller
     reckons with and forward dynamics does not;
     `ski_jacobian` (2, 6, 37) and `ski_bias` (2, 6) of the ski centres, linear then angular, world axes;
-    `ski_velocity` (2, 6), `ski_places` (2, 3), `ski_rotations` (2, 3, 3), world from ski; `com`, `com_velocity` (3,); `momentum_matrix` (3, 37), `momentum_bias`, `momentum` (3,).
+    `ski_velocity` (2, 6), `ski_places` (2, 3), `ski_rotations` (2, 3, 3), world from ski; `com`, `com_velocity` (3,);
+    `momentum_matrix` (3, 37), `momentum_bias`, `momentum` (3,);
     `about_com` (6, 6) turns a generalised force on the root into force [N, world] and moment about the centre of mass
     [N m]; `root_rows` (6, 37) are the inertia's root rows so turned.
     """

@@ -17,9 +17,7 @@ class Recorder:
         """Reserve room for about `expected` steps, whose `add` brings the values called `numbers` and `arrays`."""
         widths = [int(np.prod(shape, dtype=int)) for shape in SHAPES.values()]
         edges = np.concatenate(([0], np.cumsum(widths)))
-        self._slices = {
-            name: slice(int(a), int(b)) for name, a, b in zip(SHAPES, edges, edges[1:], strict=False)
-        }
+        self._slices = {name: slice(int(a), int(b)) for name, a, b in zip(SHAPES, edges, edges[1:], strict=False)}
         self._numbers = [self._slices[name].start for name in numbers]
         self._arrays = [self._slices[name] for name in arrays]
         self._reals = np.zeros((max(expected, 64), int(edges[-1])))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..body import SkierModel
-from ..control import Command, Controller, Dynamics, FreeSkis, gains_of
+from ..control import Controller, Dynamics, FreeSkis, gains_of
 from ..course import course_gates
 from ..frames import matrix_from_quaternion
 from ..gravity import GRAVITY

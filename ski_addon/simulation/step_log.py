@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..body import SkierModel
-from ..control import Command, Controller, Dynamics
+from ..control import Command, Controller
 from ..planning import MotionPlan, Reference
 from .recorder import Recorder
 from .recording import Recording
@@ -63,7 +63,13 @@ class StepLog:
         self._begin = count
 
     def add(
-        self, time: float, progress: float, command: Command, ratio: np.ndarray, push: np.ndarray, controller: Controller
+        self,
+        time: float,
+        progress: float,
+        command: Command,
+        ratio: np.ndarray,
+        push: np.ndarray,
+        controller: Controller,
     ) -> None:
         """Note one step: the state of the controller's dynamics, and what was decided at it.
 

@@ -19,7 +19,6 @@ from tests.control.exact_solution import exact_solution, is_feasible
 from tests.control.naive_program import NaiveProgram
 from tests.ski_runs import COARSE, FAST, WEAK, default_model, planned, random_configuration, simulated
 
-
 PLAIN = {"simulation.solver": "osqp"}
 
 

@@ -108,15 +108,26 @@ def test_duration_counts_every_step(recording):
 
 
 def test_recorder_grows_past_what_was_expected():
-    recorder = Recorder(expected=1)
+    recorder = Recorder(expected=1, numbers=("speed",), arrays=("snow_force",))
     for step in range(200):
-        reals = tuple(np.full(shape, float(step)) if shape else float(step) for shape in SHAPES.values())
-        recorder.add(reals, tuple(step % 100 for _ in COUNTS))
+        recorder.add((0.5 * step,), (np.full((2, 3), float(step)),), tuple(step % 100 for _ in COUNTS))
     assert recorder.count == 200
+    np.testing.assert_array_equal(recorder.column("speed"), 0.5 * np.arange(200))
     np.testing.assert_array_equal(recorder.column("snow_force")[:, 1, 2], np.arange(200.0))
     np.testing.assert_array_equal(recorder.column("turn"), np.arange(200) % 100)
     with pytest.raises(ValueError, match="zip"):
-        recorder.add((0.0,), tuple(0 for _ in COUNTS))
+        recorder.add((0.0, 1.0), (np.zeros((2, 3)),), tuple(0 for _ in COUNTS))
+
+
+def test_columns_are_filled_in_for_many_steps_at_once():
+    recorder = Recorder(expected=8, numbers=("time",))
+    for step in range(6):
+        recorder.add((float(step),), (), tuple(0 for _ in COUNTS))
+    recorder.fill(2, {"com": np.arange(12.0).reshape(4, 3), "turn": np.array([4, 5, 6, 7])})
+    np.testing.assert_array_equal(recorder.rows("com", 4), [[6.0, 7.0, 8.0], [9.0, 10.0, 11.0]])
+    np.testing.assert_array_equal(recorder.column("com")[:2], 0.0)
+    np.testing.assert_array_equal(recorder.column("turn"), [0, 0, 4, 5, 6, 7])
+    np.testing.assert_array_equal(recorder.column("time"), np.arange(6.0))
 
 
 # -- files that are no recordings ---------------------------------------------------
