@@ -6,6 +6,7 @@ from .dynamics import Dynamics
 from .effort import Effort, Solution
 from .formulation import Formulation, Problem
 from .gains import Gains, TaskGain
+from .program import Program
 from .small_program import SmallProgram
 from .solver import OsqpSolver
 from .tasks import TaskSet, progress_rate, rotation_error
@@ -20,6 +21,7 @@ __all__ = [
     "Gains",
     "OsqpSolver",
     "Problem",
+    "Program",
     "SmallProgram",
     "Solution",
     "TaskGain",

@@ -13,11 +13,9 @@ from .balance import Balance
 from .baselines import FreeSkis
 from .dynamics import Dynamics
 from .effort import Effort
-from .formulation import Formulation
 from .gains import Gains
 from .program import Program
 from .slide import Slide
-from .solver import OsqpSolver
 from .tasks import Desired, TaskSet, progress_rate
 
 
@@ -60,21 +58,11 @@ class Controller:
         """
         self.dynamics, self.reference = dynamics, reference
         self.tasks = TaskSet(reference, gains, dynamics)
-        self._program = Program(dynamics.model, snow, gains, segments, solver)
+        self.program = Program(dynamics.model, snow, gains, segments, solver)
         self.balance = Balance(dynamics, reference, self.tasks.motion, time_step, replans=replans)
         self.slide = Slide(dynamics, self.tasks.motion, time_step)
         self._by_clock, self._free_skis = by_clock, free_skis
         self._normal = reference.columns["normal"]
-
-    @property
-    def formulation(self) -> Formulation:
-        """The program as it is written down."""
-        return self._program.formulation
-
-    @property
-    def solver(self) -> OsqpSolver:
-        """What solves the program as it is written down."""
-        return self._program.osqp
 
     @property
     def desired(self) -> Desired:
@@ -94,7 +82,7 @@ class Controller:
         desired = self.tasks.follow(motion)
         if self._free_skis is not None:
             self._free_skis.release(desired)
-        effort = self._program.solve(dynamics, desired, edge_angle, normal, motion.leg_freedom)
+        effort = self.program.solve(dynamics, desired, edge_angle, normal, motion.leg_freedom)
         self.balance.observer.commanded(effort.torque, effort.snow)
         return Command(effort, rate, sample, edge_angle)
 

@@ -18,12 +18,12 @@ from .tasks import Desired
 
 
 class Program:
-    """Finds torques and snow forces for desired accelerations."""
+    """Finds torques and snow forces for desired accelerations; `formulation` is the program as it is written down."""
 
     def __init__(self, model: SkierModel, snow: Snow, gains: Gains, segments: int, solver: str = "small") -> None:
         """Lay out for `segments` contact points an edge; with `solver` "osqp" only the program as written is used."""
         self.formulation = Formulation(model, snow, gains, segments)
-        self._small = SmallProgram(model, snow, gains, segments) if solver == "small" else None
+        self.small = SmallProgram(model, snow, gains, segments) if solver == "small" else None
 
     @cached_property
     def osqp(self) -> OsqpSolver:
@@ -39,8 +39,8 @@ class Program:
         leg_freedom: float = 1.0,
     ) -> Effort:
         """Return muscles and snow at the present state; arguments as of `Formulation.build`. Raises nothing."""
-        if self._small is not None:
-            effort = self._small.solve(dynamics, desired, edge_angle, normal, leg_freedom)
+        if self.small is not None:
+            effort = self.small.solve(dynamics, desired, edge_angle, normal, leg_freedom)
             if effort is not None:
                 return effort
         problem = self.formulation.build(dynamics, desired, edge_angle, normal, leg_freedom)

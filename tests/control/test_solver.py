@@ -56,20 +56,20 @@ def bank(weak: bool) -> tuple[Formulation, tuple[Recorded, ...]]:
         dynamics.qpos[:], dynamics.qvel[:] = recording.qpos[i], recording.qvel[i]
         dynamics.update()
         controller.step(float(recording.progress[i]))
-    return controller.formulation, tuple(recorded)
+    return controller.program.formulation, tuple(recorded)
 
 
 def recorded_programs(controller: Controller) -> list[Recorded]:
     """A list to which every program that `controller` solves from now on is added."""
-    solve, recorded = controller.solver.solve, []
+    solve, recorded = controller.program.osqp.solve, []
 
     def recording_solve(problem: Problem) -> Solution:
         solution = solve(problem)
-        program = dense(controller.formulation, problem)
+        program = dense(controller.program.formulation, problem)
         recorded.append(Recorded(copy_of(problem), program, solution))
         return solution
 
-    controller.solver.solve = recording_solve
+    controller.program.osqp.solve = recording_solve
     return recorded
 
 
@@ -84,7 +84,7 @@ def steered_bank() -> tuple[Formulation, list[Recorded]]:
             steered.append(recorded[-1])
         recorded.clear()
     assert simulation.running
-    return controller.formulation, steered
+    return controller.program.formulation, steered
 
 
 def ordinary_bank() -> tuple[Formulation, tuple[Recorded, ...]]:
