@@ -11,6 +11,7 @@ quadratic pieces. Newton's steps with a line search therefore find its one zero 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ import numpy as np
 MOST_STEPS = 60
 """Newton's steps after which the search is given up; three are usual."""
 ACCURACY = 1e-9
-"""Largest error of F at the end, in units of the largest of the wrenches it is the difference of (at least 1)."""
+"""Largest error of F at the end, in units of the wrenches it is the difference of."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class DualNewton:
         pull = B * (-1.0 / self._weight)
         error, size = self._error(K, k, B, pull, lower, upper, z)
         for step in range(MOST_STEPS):
-            if float(abs(error).max()) <= ACCURACY * size:
+            if _largest(error) <= ACCURACY * size:
                 return DualAnswer(z, self._clipped, step, True)
             slope = K - (pull * self._free) @ B.T
             _, way, failed = self._solve(slope, -error, lower=1)
@@ -58,7 +59,7 @@ class DualNewton:
                 break
             ahead = z + way
             new_error, size = self._error(K, k, B, pull, lower, upper, ahead)
-            if float(way @ new_error) > ACCURACY * size * float(abs(way).max()):
+            if float(way @ new_error) > ACCURACY * size * _largest(way):
                 ahead = z + _turning_point(K, B, pull, lower, upper, z, way, float(way @ error)) * way
                 new_error, size = self._error(K, k, B, pull, lower, upper, ahead)
             z, error = ahead, new_error
@@ -83,9 +84,15 @@ class DualNewton:
         wrench = np.dot(B, clipped)
         needed = np.dot(K, z)
         needed += k
-        size = max(float(abs(wrench).max()), float(abs(needed).max()), 1.0)
+        size = _largest(wrench) + _largest(needed) + 1.0  # a sum, for a maximum may hide what is no number
         needed -= wrench
         return needed, size
+
+
+def _largest(vector: np.ndarray) -> float:
+    """Return the largest absolute value of a short vector, quicker than numpy does; nan if any is no number."""
+    values: list[float] = vector.tolist()
+    return max(max(values), -min(values)) if math.isfinite(sum(values)) else math.nan
 
 
 def _turning_point(

@@ -92,7 +92,7 @@ class Dynamics:
         self.com_velocity /= self.model.mass
         self._apply_drag()
         self._eliminate_poles()
-        np.take(self.qvel, self.model.body_dof, out=self.velocity, mode="clip")
+        self.qvel.take(self.model.body_dof, out=self.velocity, mode="clip")
         self._update_skis()
         self._update_momentum()
 
@@ -141,27 +141,27 @@ class Dynamics:
 
     def _eliminate_poles(self) -> None:
         flat, right = self._flat, self._pole_right
-        np.take(flat, self._bb, out=self.inertia.reshape(-1), mode="clip")
-        np.take(flat, self._bp, out=self._bp_block.reshape(-1), mode="clip")
-        np.take(flat, self._pp, out=self._pp_block.reshape(-1), mode="clip")
+        flat.take(self._bb, out=self.inertia.reshape(-1), mode="clip")
+        flat.take(self._bp, out=self._bp_block.reshape(-1), mode="clip")
+        flat.take(self._pp, out=self._pp_block.reshape(-1), mode="clip")
         net = self._qfrc_bias - self._qfrc_passive
         net -= self.applied
         right[:, :-1] = self._bp_block.T
-        np.take(net, self.model.pole_dof, out=right[:, -1], mode="clip")
+        net.take(self.model.pole_dof, out=right[:, -1], mode="clip")
         _, _, coupling, _ = self._solve(self._pp_block, right)
         reduced = np.dot(self._bp_block, coupling)
         self.inertia -= reduced[:, :-1]
-        np.take(net, self.model.body_dof, out=self.bias, mode="clip")
+        net.take(self.model.body_dof, out=self.bias, mode="clip")
         self.bias -= reduced[:, -1]
 
     def _update_skis(self) -> None:
         mj, m, d, skis = self._mj, self.model.mujoco, self.data, self.model.ski_body
-        np.take(self._xpos, skis, axis=0, out=self.ski_places, mode="clip")
-        np.take(self._xmat, skis, axis=0, out=self.ski_rotations, mode="clip")
+        self._xpos.take(skis, axis=0, out=self.ski_places, mode="clip")
+        self._xmat.take(skis, axis=0, out=self.ski_rotations, mode="clip")
         for point, (ski, *parts) in zip(self.ski_places, self._ski_parts, strict=True):
             mj.mj_jac(m, d, parts[0], parts[1], point, ski)
             mj.mj_jacDot(m, d, parts[2], parts[3], point, ski)
-        np.take(self._jac, self.model.body_dof, axis=1, out=self.ski_jacobian.reshape(12, -1), mode="clip")
+        self._jac.take(self.model.body_dof, axis=1, out=self.ski_jacobian.reshape(12, -1), mode="clip")
         np.dot(self._jac, self.qvel, out=self.ski_velocity.reshape(-1))
         np.dot(self._jac_dot, self.qvel, out=self.ski_bias.reshape(-1))
 

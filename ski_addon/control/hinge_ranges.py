@@ -46,3 +46,9 @@ class HingeRanges:
             bound *= 4.0 / JOINT_LIMIT_TIME**2
             np.maximum(bound, -ACCELERATION_LIMIT, out=bound)
             np.minimum(bound, ACCELERATION_LIMIT, out=bound)
+
+    def end_stop(self, torque: np.ndarray) -> np.ndarray:
+        """Return what of `torque` (31,) [N m] the muscles cannot give, and the end stops do."""
+        if not self._stopping:
+            return np.zeros(len(torque))
+        return torque - np.clip(torque, self._model.torque_lower, self._model.torque_upper)

@@ -12,7 +12,7 @@ z = y + C (w - w*) what is left are six equations for z (`dual.py`):
     K z + k = B f(z),     S = A P^-1 A',   (I + S C) K = S,   (I + S C) k = A P^-1 g + h + S C w*.
 
 Torques follow from the equations of motion. Where one is beyond its limit, or a hinge's acceleration is, the answer is
-not that of the whole program, and `within_limits` says so.
+not that of the whole program, and there is none from here.
 """
 
 from __future__ import annotations
@@ -30,9 +30,6 @@ from .hinge_ranges import HingeRanges
 from .snow_patch import SnowPatch
 from .task_weights import posture_weights, ski_weights
 from .tasks import Desired
-
-LEEWAY = 1e-9
-"""How far past a bound, in units of 1 rad/s^2 or of the torque limit, is not past it."""
 
 
 class SmallProgram:
@@ -64,7 +61,6 @@ class SmallProgram:
         self._cost = self._momentum_weight * np.eye(6)
         self._wish = np.zeros(6)
         self._identity = np.eye(6)
-        self._torque_scale = 1.0 / np.maximum(-model.torque_lower, model.torque_upper)
         self._z = np.zeros(6)
 
     def solve(
@@ -146,25 +142,23 @@ class SmallProgram:
         """Return what the solution takes, or None when it takes too much."""
         ranges, patch, hinges = self.ranges, self.patch, acceleration[6:]
         ranges.update(dynamics)
-        if bool((hinges < ranges.lower - LEEWAY).any()) or bool((hinges > ranges.upper + LEEWAY).any()):
+        if bool((hinges < ranges.lower).any()) or bool((hinges > ranges.upper).any()):
             return None
         wrench = patch.ski_wrenches(forces)
         snow = wrench.reshape(12) @ dynamics.ski_jacobian.reshape(12, -1)
         force = dynamics.inertia @ acceleration + (dynamics.bias - dynamics.outside) - snow
         torque = force[6:]
-        leeway = LEEWAY / self._torque_scale
-        if bool((torque < ranges.torque_lower - leeway).any()) or bool((torque > ranges.torque_upper + leeway).any()):
+        if bool((torque < ranges.torque_lower).any()) or bool((torque > ranges.torque_upper).any()):
             return None
-        model = self._model
         edges = patch.edge_forces(forces)
         return Effort(
             torque=torque,
-            end_stop=torque - np.clip(torque, model.torque_lower, model.torque_upper),
+            end_stop=ranges.end_stop(torque),
             snow=snow,
             edge_normal=edges[:, 0],
             edge_side=edges[:, 1],
             load_moment=patch.load_moments(dynamics, forces),
             ski_force=wrench[:, :3],
-            root_residual=float(abs(force[:6]).max()),
+            root_residual=max(map(abs, force[:6].tolist())),
             solution=Solution(np.concatenate((acceleration, forces)), steps, 0, 1),
         )

@@ -28,17 +28,16 @@ class ForceBounds:
         self._shear_cap = EDGE_SHEAR_RATIO * weight
         self._grip = snow.shear_limit / FORCE_UNIT / segments
         self._lifting_cap = LIFTING_EDGE_WEIGHTS * weight / segments
-        self._last: list[list[float]] = [[], []]
+        self._last = [(-1.0, -1.0), (-1.0, -1.0)]
 
     def set(self, edge_angle: np.ndarray) -> None:
         """Set the bounds for skis at `edge_angle` (2,) [rad]."""
         for ski, angle in enumerate(edge_angle.tolist()):
-            left, right = edge_bearing(angle)
-            values = self._values(left, right)
-            if values == self._last[ski]:
+            bearing = edge_bearing(angle)
+            if bearing == self._last[ski]:
                 continue
-            self._last[ski] = values
-            normal_left, normal_right, push_left, push_right, slight = values
+            self._last[ski] = bearing
+            normal_left, normal_right, push_left, push_right, slight = self._values(*bearing)
             lower, upper = self._lower[ski], self._upper[ski]
             upper[0, 0], upper[0, 1] = normal_left, normal_right
             upper[1, 0], upper[1, 1] = push_left, slight
@@ -76,9 +75,9 @@ class SnowPatch:
         places = np.vstack((np.ones(len(points)), points[:, :2].T))  # of one ski and one direction: 1, along, left
         self._sums = FORCE_UNIT * np.kron(np.eye(4), places)  # (12, count)
         self._edges = FORCE_UNIT * np.kron(np.eye(8), np.ones(segments))  # (8, count)
-        self._columns = np.zeros((12, 6))
+        self._columns = np.zeros((12, 6))  # of each sum: its force, and its moment about the centre of mass
+        self._frames = np.zeros((2, 6, 6))  # the same about each ski's own middle
         self.wrenches = np.zeros((6, self.count))
-        self._frames: list[list[list[float]]] = [[], []]
 
     def place(self, dynamics: Dynamics, normal: np.ndarray) -> None:
         """Take the skis' present places and velocities on snow of unit `normal` (3,)."""
@@ -98,12 +97,9 @@ class SnowPatch:
             speed = (vx * vx + vy * vy + vz * vz) ** 0.5
             drag = float(self._snow.friction_coefficient(speed)) / max(speed, 1e-6)  # against the travel
             push = (nx - drag * vx, ny - drag * vy, nz - drag * vz)
-            frame = []
             for direction in (push, side):
                 along, across = _cross(fore, direction), _cross(left, direction)
                 rows += [[*direction, *_cross(middle, direction)], [0.0, 0.0, 0.0, *along], [0.0, 0.0, 0.0, *across]]
-                frame += [[*direction, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *along], [0.0, 0.0, 0.0, *across]]
-            self._frames[ski] = frame
         self._columns[:] = rows
         np.dot(self._columns.T, self._sums, out=self.wrenches)
 
@@ -113,8 +109,11 @@ class SnowPatch:
 
     def ski_wrenches(self, forces: np.ndarray) -> np.ndarray:
         """Return force [N] and moment about the ski's middle [N m] of the snow on each ski (2, 6), world axes."""
+        frames = self._frames
+        frames[:] = self._columns.reshape(2, 6, 6)
+        frames[:, ::3, 3:] = 0.0
         sums = (self._sums @ forces).reshape(2, 1, 6)
-        return np.matmul(sums, np.array(self._frames))[:, 0]
+        return np.matmul(sums, frames)[:, 0]
 
     def edge_forces(self, forces: np.ndarray) -> np.ndarray:
         """Return the sum of `forces` (count,) on each ski, by normal or side force and edge (2, 2, 2) [N]."""
@@ -122,8 +121,8 @@ class SnowPatch:
 
     def load_moments(self, dynamics: Dynamics, forces: np.ndarray) -> np.ndarray:
         """Return, for each ski, its normal forces times their places from the ski's middle (2, 3) [N m, world]."""
-        sums = (self._sums @ forces).reshape(2, 6)
-        return np.stack([dynamics.ski_rotation(ski)[:, :2] @ sums[ski, 1:3] for ski in range(2)])
+        sums = (self._sums @ forces).reshape(2, 6, 1)
+        return np.matmul(dynamics.ski_rotations[:, :, :2], sums[:, 1:3])[..., 0]
 
 
 def _cross(a: tuple[float, float, float], b: tuple[float, float, float]) -> tuple[float, float, float]:

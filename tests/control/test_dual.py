@@ -102,9 +102,10 @@ def test_no_snow_at_all():
     np.testing.assert_allclose(answer.z, -np.linalg.solve(given.K, given.k), rtol=1e-6)
 
 
-def test_what_is_no_number_does_not_converge():
+@pytest.mark.parametrize("place", range(6))
+def test_what_is_no_number_does_not_converge(place):
     given = problem(3)
-    broken = DualNewton(len(given.lower), 1e-3).solve(
-        given.K, given.k * np.nan, given.B, given.lower, given.upper, np.zeros(6)
-    )
-    assert not broken.converged
+    broken = given.k.copy()
+    broken[place] = np.nan
+    newton = DualNewton(len(given.lower), given.weight)
+    assert not newton.solve(given.K, broken, given.B, given.lower, given.upper, np.zeros(6)).converged
