@@ -39,9 +39,9 @@ class SmallProgram:
         """Reserve room for `segments` contact points on each of the four edges."""
         from scipy.linalg import blas, lapack
 
-        # numpy's own would share even these small systems between threads, and wait for them
-        self._add_squares, self._factor, self._forward = blas.dsyrk, lapack.dpotrf, lapack.dtrtrs
-        self._solve = lapack.dgesv
+        # none of these shares so small a system between threads; numpy's own, and dtrtrs, do, and wait for them
+        self._add_squares, self._factor, self._solve = blas.dsyrk, lapack.dpotrf, lapack.dgesv
+        self._forward, self._back = blas.dtrsm, blas.dtrsv
         self._model = model
         self.patch, self.ranges = SnowPatch(model, snow, segments), HingeRanges(model)
         self._newton = DualNewton(self.patch.count, gains.force)
@@ -113,7 +113,7 @@ class SmallProgram:
         np.dot(target.reshape(12) * self._scale, rows, out=columns[:, 6])
         columns[:, 6] += posture * self._posture_target
         self._factor(hessian, lower=1, clean=0, overwrite_a=1)
-        self._forward(hessian, columns, lower=1, overwrite_b=1)
+        self._forward(1.0, hessian, columns, lower=1, overwrite_b=1)
 
     def _six_equations(self, dynamics: Dynamics, desired: Desired) -> tuple[np.ndarray, np.ndarray]:
         """Return K (6, 6) and k (6,), and set the wrench's cost C and the wish C w*."""
@@ -135,8 +135,7 @@ class SmallProgram:
     def _acceleration(self, y: np.ndarray) -> np.ndarray:
         """Return q'' (37,) = P^-1 (g + A' y)."""
         half = self._columns[:, 6] + self._columns[:, :6] @ y
-        out, _ = self._forward(self._hessian, half, lower=1, trans=1, overwrite_b=1)
-        return out
+        return self._back(self._hessian, half, lower=1, trans=1, overwrite_x=1)
 
     def _effort(self, dynamics: Dynamics, acceleration: np.ndarray, forces: np.ndarray, steps: int) -> Effort | None:
         """Return what the solution takes, or None when it takes too much."""
