@@ -32,8 +32,7 @@ class Entry:
 
 STEP = Entry("tsid", ("eiquadprog/6d", "total"), "TSID")
 STAGES = {
-    "build the program": Entry("tsid", ("eiquadprog/6d", "build"), "TSID build"),
-    "solve the program": Entry("tsid", ("eiquadprog/6d", "solve"), "TSID solve"),
+    "assemble and solve": Entry("tsid", ("eiquadprog/6d", "total"), "TSID step"),
     "MuJoCo and dynamics": Entry(
         "floor", ("lean: kinematics+comPos+crb+comVel+rne+fullM+2 ski jac",), "MuJoCo's calls"
     ),
