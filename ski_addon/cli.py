@@ -267,6 +267,35 @@ def _add_robustness(subparsers: _Subparsers) -> None:
     _add_talk(parser)
 
 
+def _add_crowd(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "crowd",
+        "simulate many skiers who differ and stay apart",
+        "CROWD is a crowd document, a preset in presets/crowds, or one run that all ski, each in his own way. Start\n"
+        "times are chosen so that the planned ways stay apart; then everybody is simulated, in parallel processes.\n"
+        "Writes member_001.npz and so on, each as soon as it is finished, crowd.json, and crowd.toml with its runs.\n"
+        "Stop it with Ctrl+C whenever you like: the same command goes on with those who are missing.\n\n"
+        "  python -m ski_addon crowd pursuit_race -o out/race                    a shipped crowd\n"
+        "  python -m ski_addon crowd medium_carving --count 8 --apart 4 -o out   eight on one run\n"
+        "  python -m ski_addon crowd free_skiing --set spread.offset=15 --set simulation.time_step=0.002 -o out\n\n"
+        "--set takes keys of the crowd (crowd.delay_max, spread.height, ...) and of the runs in it; see docs/crowd.md.",
+    )
+    parser.add_argument("spec", metavar="CROWD", help="crowd or run document (.toml), or the name of a preset")
+    _add_changes(parser)
+    _add_output(parser, "DIR", "folder for the results", required=True)
+    for name, metavar, text in (
+        ("count", "COUNT", "how many ski"),
+        ("seed", "SEED", "seed of everything in which they differ"),
+        ("interval", "SECONDS", "time from one start to the next; 0 = all want to start at once"),
+        ("apart", "METRES", "least distance between any two; who would come nearer starts later"),
+        ("jobs", "COUNT", "processes that run at the same time (as many as there are processors)"),
+    ):
+        parser.add_argument(f"--{name}", metavar=metavar, help=text)
+    _add_talk(parser)
+    _add_force(parser)
+
+
 def _add_gallery(subparsers: _Subparsers) -> None:
     parser = _command(
         subparsers,
@@ -292,6 +321,6 @@ def _add_demo(subparsers: _Subparsers) -> None:
 
 COMMANDS = (
     *(_add_run, _add_plan, _add_preview, _add_simulate, _add_bake, _add_report, _add_render, _add_validate),
-    *(_add_robustness, _add_gallery, _add_demo),
+    *(_add_crowd, _add_robustness, _add_gallery, _add_demo),
 )
 """What adds each command to the parser, in the order of the help."""

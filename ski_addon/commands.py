@@ -17,6 +17,13 @@ if TYPE_CHECKING:
 DEMO_PRESET = "giant_slalom"
 TABLE_OPTIONS = ("forces", "bodies", "directions", "speeds", "moments", "duration")
 """Options of `robustness` that make its table."""
+CROWD_OPTIONS = {
+    "count": "crowd.count",
+    "seed": "crowd.seed",
+    "interval": "crowd.start_interval",
+    "apart": "crowd.apart",
+}
+"""Options of `crowd` that are keys of its document."""
 
 
 def run_command(arguments: argparse.Namespace) -> int:
@@ -127,7 +134,8 @@ def validate_command(arguments: argparse.Namespace) -> int:
 
 def robustness_command(arguments: argparse.Namespace) -> int:
     """`robustness`: push the skier of a run in many ways, and say what became of him."""
-    from .robustness.cases import read_jobs, read_table
+    from .robustness.cases import read_table
+    from .workers import read_jobs
 
     talk, spec = _talk(arguments), _read_spec(arguments.spec, arguments)
     table = read_table(**{name: getattr(arguments, name) for name in TABLE_OPTIONS})
@@ -139,6 +147,32 @@ def robustness_command(arguments: argparse.Namespace) -> int:
         talk.say(line)
     talk.say(f"results in {folder}")
     talk.give(summary)
+    return 0
+
+
+def crowd_command(arguments: argparse.Namespace) -> int:
+    """`crowd`: simulate many skiers who differ and stay apart."""
+    from .crowd import find_crowd, read_crowd
+    from .crowd.expected import describe
+    from .crowd.running import raise_shortfall
+    from .workers import read_jobs
+
+    talk, changes = _talk(arguments), _changes(arguments)
+    given = ((key, getattr(arguments, name)) for name, key in CROWD_OPTIONS.items())
+    changes |= {key: value for key, value in given if value is not None}
+    parts = [find_document(part, PART_KINDS) for part in arguments.parts]
+    crowd = read_crowd(find_crowd(arguments.spec), parts, changes)
+    jobs = min(read_jobs(arguments.jobs), crowd.crowd.count)
+    for run in crowd.runs:
+        _check_size(run.spec, arguments)
+    talk.say(f"{crowd.name}: {describe(crowd, jobs)}")
+    with atomic.output_folder(arguments.output) as folder:
+        summary, lines = results.run_crowd(crowd, folder, jobs, talk)
+    for line in lines:
+        talk.say(line)
+    talk.say(f"results in {folder}")
+    talk.give(summary)
+    raise_shortfall(summary)
     return 0
 
 
@@ -237,12 +271,13 @@ def _changes(arguments: argparse.Namespace) -> dict[str, str]:
     return changes
 
 
-def _check_size(spec: RunSpec, arguments: argparse.Namespace, talk: Talk) -> None:
+def _check_size(spec: RunSpec, arguments: argparse.Namespace, talk: Talk | None = None) -> None:
     expected = estimate(spec)
     if expected.too_large and not arguments.force:
         hint = "shorten the course, or add --force to start it all the same"
         raise SpecError("course", problem=f"would take {expected.described}, more than 8 GB or an hour", hint=hint)
-    talk.say(f"{spec.name}: {expected.described}")
+    if talk is not None:
+        talk.say(f"{spec.name}: {expected.described}")
 
 
 def _recording_path(source: str) -> Path | None:

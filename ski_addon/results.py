@@ -26,6 +26,7 @@ from .spec import RunSpec
 from .talk import Talk, json_text
 
 if TYPE_CHECKING:
+    from .crowd import CrowdSpec
     from .robustness import PushTable
     from .simulation import Recording
     from .turning.motion import TurningMotion
@@ -105,6 +106,16 @@ def run_robustness(
     with _failures_in(folder):
         summary = robustness.write_results(folder, spec, table, outcomes, picture=picture)
     return summary, table_lines(table, outcomes)
+
+
+def run_crowd(crowd: CrowdSpec, folder: Path, jobs: int, talk: Talk) -> tuple[dict[str, Any], list[str]]:
+    """Simulate a crowd into `folder`; returns its summary and its lines for a screen."""
+    from .crowd.running import run_crowd as run
+    from .crowd.summary import summary_lines
+
+    with talk.progress() as progress:
+        summary = run(crowd, folder, jobs, progress)
+    return summary, summary_lines(summary)
 
 
 def load_recording(path: Path) -> Recording:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -76,14 +75,6 @@ def read_table(**written: str | None) -> PushTable:
         several = _without_repeats(_read(info, part) for part in text.split(","))
         values[name] = tuple(sorted(several)) if info.kind == NUMBER else several
     return PushTable(**values)
-
-
-def read_jobs(text: str | None) -> int:
-    """Return the number of processes written after `--jobs`, or as many as this process may use processors."""
-    if text is None:
-        affinity = getattr(os, "sched_getaffinity", None)  # not on every system
-        return len(affinity(0)) if affinity else os.cpu_count() or 1
-    return int(_read(FieldInfo("--jobs", "whole", 1, "", low=1, high=1024), text))
 
 
 def _field(name: str) -> FieldInfo:

@@ -14,11 +14,11 @@ from ..errors import Cancelled
 from ..pipeline import start_simulation
 from ..simulation import Recording
 from ..spec import PushSpec, RunSpec
+from ..workers import run_all, worker_pool
 from .bound import push_bound
 from .cases import Case, PushTable, Row
 from .moments import HOLD, WATCH, Prepared, prepare
 from .recovery import measure_deviation, recovery_time
-from .workers import run_all, worker_pool
 
 RECOVERED, SURVIVED, FELL = "recovered", "survived", "fell"
 """What became of a run: back on the plan in time, still up but not back, or fallen."""

@@ -103,6 +103,10 @@ class RunSpec:
         inner = {place: values.parse_text(place.field, overrides[key]) for key, place in places.items() if place}
         return changed._merged(row_values.with_places(changed, inner)) if inner else changed
 
+    def with_tables(self, content: Mapping[str, Any]) -> RunSpec:
+        """Return a checked copy with nested tables `{"course": {"turn_count": 6}}` laid over this spec."""
+        return self._merged(content)
+
     def with_part(self, path: str | Path) -> RunSpec:
         """Return a copy with the sections of a part document (a skier, a snow, a style) laid over this one.
 

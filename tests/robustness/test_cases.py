@@ -6,7 +6,6 @@ import pytest
 
 from ski_addon.errors import SpecError
 from ski_addon.robustness import Case, PushTable, Row, read_table
-from ski_addon.robustness.cases import read_jobs
 
 
 def test_the_default_table_is_the_promised_one():
@@ -49,10 +48,3 @@ def test_a_bad_value_is_named_with_its_option(written, words):
     with pytest.raises(SpecError) as caught:
         read_table(**written)
     assert words in str(caught.value) and "\n" not in str(caught.value)
-
-
-def test_jobs_are_a_whole_number_or_the_processors():
-    assert read_jobs("3") == 3 and read_jobs(None) >= 1
-    for wrong in ("0", "1.5", "many", ""):
-        with pytest.raises(SpecError, match="^--jobs"):
-            read_jobs(wrong)

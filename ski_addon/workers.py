@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -15,10 +16,27 @@ from multiprocessing.process import BaseProcess
 from multiprocessing.synchronize import Event
 from typing import Any
 
-from ..errors import SkiAddonError
+from .errors import SkiAddonError
+from .spec import FieldInfo
+from .spec.values import check, parse_text
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Environment variables that say how many threads linear algebra uses."""
+
+
+GRACE = 3.0
+"""How long [s] a worker whose first process was killed may take to finish the file it writes."""
+
+
+def read_jobs(text: str | None) -> int:
+    """Return the number of processes written after `--jobs`, or as many as this process may use processors."""
+    if text is None:
+        affinity = getattr(os, "sched_getaffinity", None)  # not on every system
+        return len(affinity(0)) if affinity else os.cpu_count() or 1
+    info = FieldInfo("--jobs", "whole", 1, "", low=1, high=1024)
+    value: Any = parse_text(info, text)
+    check(info, value)
+    return int(value)
 
 
 def run_all(
@@ -27,10 +45,11 @@ def run_all(
     tasks: Sequence[tuple[Any, ...]],
     progress: Callable[[float, str], Any],
     what: str,
+    each: Callable[[Any], Any] = lambda _result: None,
 ) -> list[Any]:
     """Return `work(*task, stop=...)` of every task, in order; the first failure is raised.
 
-    `progress(fraction, text)` is called after each; `what` says in its text what is done.
+    `each(result)` and then `progress(fraction, text)` are called after each; `what` says in its text what is done.
     """
     with _interrupts_held():
         futures = [pool.submit(_in_worker, work, *task) for task in tasks]
@@ -40,6 +59,7 @@ def run_all(
             error = SkiAddonError(outcome.message)
             error.exit_code = outcome.exit_code
             raise error
+        each(outcome)
         progress(done / len(futures), f"{what}: {done} of {len(futures)}")
     return [future.result() for future in futures]
 
@@ -55,7 +75,7 @@ def worker_pool(jobs: int) -> Iterator[ProcessPoolExecutor]:
     try:
         yield pool
     except BrokenProcessPool:
-        message = "a process of the table ended unexpectedly: was there memory enough? Try fewer --jobs"
+        message = "a process ended unexpectedly: was there memory enough? Try fewer --jobs"
         raise SkiAddonError(message) from None
     finally:
         stop.set()
@@ -84,10 +104,11 @@ def _in_worker(work: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def _start_worker(stop: Event) -> None:
-    """Leave Ctrl+C to the first process, which stops all workers; end when it is gone."""
+    """Leave Ctrl+C and kills to the first process, which stops all workers; end when it is gone."""
     global _stop
     _stop = stop
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGINT, signal.SIGTERM):  # a whole group may be told to end
+        signal.signal(number, signal.SIG_IGN)
     first = multiprocessing.parent_process()
     if first is not None:
         threading.Thread(target=_end_with, args=(first,), daemon=True).start()
@@ -107,6 +128,9 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def _end_with(first: BaseProcess) -> None:
-    """Wait for the end of the first process, then end this one."""
+    """Wait for the end of the first process, then end this one: soon, so that the file it writes is whole or gone."""
     first.join()
+    if _stop is not None:
+        _stop.set()
+        time.sleep(GRACE)
     os._exit(1)

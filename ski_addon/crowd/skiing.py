@@ -1,0 +1,150 @@
+"""Skiing one member: planned and simulated in this process, its recording written whole, what it took measured."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import Cancelled
+from .members import Member
+from .tracks import Way, way_of
+
+FINISHED = "finished"
+CHUNK_SECONDS = 0.1
+"""Simulated time between two looks at whether to stop [s]."""
+DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a member that was skied, or found already skied (`kept`).
+
+    `status` as in a recording, with `detail` of a fall; the `way` that was skied; simulated and waiting time [s];
+    size of its recording [bytes]; the process, and the most memory it has had so far [bytes] (None: not known).
+    """
+
+    index: int
+    status: str
+    detail: str
+    way: Way
+    simulated_s: float
+    wall_s: float
+    recording_bytes: int
+    kept: bool
+    process: int
+    memory_bytes: int | None
+
+
+def recording_name(index: int) -> str:
+    """Return the name of the file of the member `index` (from 0)."""
+    return f"member_{index + 1:03d}.npz"
+
+
+def ski_member(member: Member, folder: Path, stop: Callable[[], bool] = lambda: False) -> Outcome:
+    """Simulate `member` to its end and write its recording into `folder`; one that is there already is kept.
+
+    Raises `Cancelled`, with nothing written, when `stop` says so, and `OutputError`.
+    """
+    from ..pipeline import make_plan, start_simulation
+
+    target = folder / recording_name(member.index)
+    kept = kept_outcome(member, folder)
+    if kept is not None:
+        return kept
+    begin = time.perf_counter()
+    if stop():
+        raise Cancelled
+    simulation = start_simulation(make_plan(member.spec))
+    chunk = max(int(CHUNK_SECONDS / simulation.time_step), 1)
+    while simulation.advance(chunk):
+        if stop():
+            raise Cancelled
+    recording = simulation.recording()
+    recording.save(target)
+    return Outcome(
+        index=member.index,
+        status=recording.status,
+        detail=_detail(recording.header),
+        way=way_of(recording.time, recording.com, float(recording.time[-1])),
+        simulated_s=recording.duration,
+        wall_s=time.perf_counter() - begin,
+        recording_bytes=target.stat().st_size,
+        kept=False,
+        process=os.getpid(),
+        memory_bytes=peak_memory(),
+    )
+
+
+def kept_outcome(member: Member, folder: Path) -> Outcome | None:
+    """Return what became of `member` in an earlier run, or None if there is no whole recording of just that member.
+
+    Only the places are read, not the whole recording.
+    """
+    from ..simulation.versions import library_versions
+
+    path = folder / recording_name(member.index)
+    if not path.is_file():
+        return None
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = set(archive.namelist())
+        with np.load(path, allow_pickle=False) as members:
+            header = json.loads(members["header"].tobytes())
+            if header["spec_hash"] != member.spec.content_hash() or header["versions"] != library_versions():
+                return None
+            moments, place = members["time"], members["com"]
+        if not len(moments) or "end_stop.npy" not in names or header["status"] == "cancelled":
+            return None
+    except DAMAGE:
+        return None
+    return Outcome(
+        index=member.index,
+        status=str(header["status"]),
+        detail=_detail(header),
+        way=way_of(moments, place, float(moments[-1])),
+        simulated_s=float(moments[-1] + header["time_step"]),
+        wall_s=0.0,
+        recording_bytes=path.stat().st_size,
+        kept=True,
+        process=os.getpid(),
+        memory_bytes=None,
+    )
+
+
+def peak_memory() -> int | None:
+    """Return the most memory this process has held at once [bytes], or None where the system does not tell.
+
+    Linux's own count comes first: that of getrusage begins with the size of the process that started this one.
+    """
+    try:
+        for line in Path("/proc/self/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) * 1024
+    except (OSError, ValueError):
+        pass
+    try:
+        import resource
+        import sys
+    except ImportError:  # Windows
+        return None
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return int(most) if sys.platform == "darwin" else int(most) * 1024
+
+
+def clean_up(folder: Path) -> None:
+    """Remove the unfinished files that killed processes left in the folder of a crowd."""
+    for path in folder.glob(".member_*.tmp.npz"):
+        path.unlink(missing_ok=True)
+
+
+def _detail(header: dict[str, Any]) -> str:
+    said = header.get("status_detail") or {}
+    return f"{said['what']} at {said['time']:.2f} s; {said['why']}" if said else ""
