@@ -1,4 +1,4 @@
-"""Reading and writing crowd documents: TOML files of [crowd], [spread], [[run]], and [all] that is laid over all runs."""
+"""Reading and writing crowd documents: TOML of [crowd], [spread], [[run]], and [all] that is laid over all runs."""
 
 from __future__ import annotations
 

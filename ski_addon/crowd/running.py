@@ -58,6 +58,7 @@ def run_crowd(spec: CrowdSpec, folder: Path, jobs: int, progress: Progress) -> d
             _plan(run, pool, progress)
             run.starts = find_starts(spec, _ways(run.plans), frame_rate(spec))
             _ski(run, pool, progress)
+            _settle(run)
     except (KeyboardInterrupt, Cancelled):
         run.stopped = True
         write_summary(run)
@@ -99,6 +100,7 @@ def steps_here(spec: CrowdSpec, folder: Path) -> Iterator[tuple[float, str]]:
         yield 0.1 + 0.9 * done / len(placed), f"skiing: {done} of {len(placed)}"
         run.outcomes[index] = ski_member(run.plans[index].member, folder)
         write_summary(run)
+    _settle(run)
     write_summary(run)
 
 
@@ -135,6 +137,14 @@ def _ski(run: CrowdRun, pool: ProcessPoolExecutor | None, progress: Progress) ->
     finally:
         run.outcomes = dict(sorted(run.outcomes.items()))
         run.skiing_s = time.perf_counter() - begin
+
+
+def _settle(run: CrowdRun) -> None:
+    """Find the starts anew from the ways that were skied, which differ a little from the plans.
+
+    Nothing has to be skied again for it: when somebody starts changes nothing in how he skis.
+    """
+    run.starts |= find_starts(run.spec, {i: outcome.way for i, outcome in run.outcomes.items()}, frame_rate(run.spec))
 
 
 def _each(

@@ -26,7 +26,8 @@ def summarise(run: CrowdRun) -> dict[str, Any]:
     ways = {index: plan.way for index, plan in run.plans.items() if plan.way is not None and index in starts}
     linger = run.spec.crowd.linger
     planned = real_nearest(ways, starts, linger)
-    real = real_nearest({index: outcome.way for index, outcome in run.outcomes.items()}, starts, linger)
+    skied_ways = {index: outcome.way for index, outcome in run.outcomes.items() if index in starts}
+    real = real_nearest(skied_ways, starts, linger)
     members = [_member(run, index, planned.get(index), real.get(index)) for index in range(run.spec.crowd.count)]
     skied = [outcome for outcome in run.outcomes.values() if not outcome.kept]
     wall = run.skiing_s
@@ -145,10 +146,10 @@ def _person(member: Member) -> dict[str, Any]:
 
 
 def _status(run: CrowdRun, index: int) -> str:
-    if index in run.outcomes:
-        return run.outcomes[index].status
     if isinstance(run.starts.get(index), NoRoom):
         return NO_ROOM
+    if index in run.outcomes:
+        return run.outcomes[index].status
     plan = run.plans.get(index)
     return INFEASIBLE if plan is not None and plan.way is None else WAITING
 

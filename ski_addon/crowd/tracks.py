@@ -23,21 +23,24 @@ class Way:
 
 def way_of(time: np.ndarray, place: np.ndarray, duration: float) -> Way:
     """Return the way of someone who is at `place` (m, 3) at `time` (m,) [s]; a plan or a recording has both."""
-    moments = np.arange(int(np.ceil(duration / STEP)) + 1) * STEP  # the last is the end or just past it
+    moments = np.arange(max(int(np.ceil(duration / STEP)), 1) + 1) * STEP  # the last is the end or just past it
     return Way(np.stack([np.interp(moments, time, column) for column in place.T], axis=1), float(duration))
 
 
 def on_clock(way: Way, start: float, linger: float) -> tuple[int, np.ndarray]:
     """Return where someone who starts at `start` [s] is on the crowd's clock.
 
-    A whole number i of steps, and places (m, 3) at the times i, i + 1, ... steps, from just before the start until
-    `linger` [s] past the end, when nobody is on the slope any more who stands at its end.
+    A whole number i of steps, and places (m, 3) at the times i, i + 1, ... steps: from less than a step before the
+    start, as if skiing already, until `linger` [s] past the end, less than a step short of
+    it, while the skier stands there.
     """
     first = int(np.floor(start / STEP + 1e-9))
-    last = int(np.ceil((start + way.duration + linger) / STEP - 1e-9))
+    last = max(int(np.floor((start + way.duration + linger) / STEP + 1e-9)), first + 1)
     moments = (np.arange(first, last + 1) * STEP - start) / STEP
     own = np.arange(len(way.place))
-    return first, np.stack([np.interp(moments, own, column) for column in way.place.T], axis=1)
+    place = np.stack([np.interp(moments, own, column) for column in way.place.T], axis=1)
+    place[0] += min(float(moments[0]), 0.0) * (way.place[1] - way.place[0])
+    return first, place
 
 
 def least_distance(apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
