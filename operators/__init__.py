@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import bpy
 
-from . import analyse, bake, bones, course, plan, preset, rows, simulate, skier
+from . import analyse, bake, bones, course, crowd, plan, preset, rows, simulate, skier
 
 _CLASSES = tuple(
-    cls for module in (skier, bones, preset, rows, course, plan, simulate, bake, analyse) for cls in module.CLASSES
+    cls
+    for module in (skier, bones, preset, rows, course, plan, simulate, bake, crowd, analyse)
+    for cls in module.CLASSES
 )
 
 

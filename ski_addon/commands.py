@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import apart, atomic, results
+from .crowd.skied import is_crowd_folder
 from .errors import MissingInputError, SkiAddonError, SpecError
 from .spec import PART_KINDS, RunSpec, estimate, find_document
 from .talk import Talk, json_text, summary_lines
@@ -54,8 +55,12 @@ def plan_command(arguments: argparse.Namespace) -> int:
 
 
 def bake_command(arguments: argparse.Namespace) -> int:
-    """`bake`: recording (or a run, simulated first) -> .blend."""
+    """`bake`: recording (or a run, simulated first), or a crowd -> .blend."""
     talk = _talk(arguments)
+    if is_crowd_folder(Path(arguments.source)):
+        if arguments.changes or arguments.parts:
+            raise SpecError("--set", problem="cannot change a crowd that was skied", hint="simulate it again with it")
+        return _show_crowd("bake", arguments, "crowd.blend")
     recording_path = _recording_path(arguments.source)
     default_folder = recording_path.parent if recording_path else Path(".")
     target = _target(arguments.output or default_folder, "skier.blend")
@@ -86,7 +91,9 @@ def report_command(arguments: argparse.Namespace) -> int:
 
 
 def render_command(arguments: argparse.Namespace) -> int:
-    """`render`: recording -> one picture of the slope with the skier at several instants."""
+    """`render`: recording -> one picture of the slope with the skier at several instants; crowd -> its fullest one."""
+    if is_crowd_folder(Path(arguments.source)):
+        return _show_crowd("render", arguments, "crowd.png")
     results.check_blender("rendering")
     path, target = _picture_paths(arguments, "strobe.png")
     with atomic.output_folder(target.parent):
@@ -205,6 +212,19 @@ def demo_command(arguments: argparse.Namespace) -> int:
         talk.say("rendering strobe.png, about a minute")
         results.run_blender_command("render", folder / "recording.npz", folder / "strobe.png")
     _tell(talk, spec, summary, folder)
+    return 0
+
+
+def _show_crowd(name: str, arguments: argparse.Namespace, file_name: str) -> int:
+    """Bake or render the crowd in a folder."""
+    results.check_blender("baking" if name == "bake" else "rendering")
+    folder = Path(arguments.source)
+    target = _target(arguments.output or folder, file_name)
+    with atomic.output_folder(target.parent):
+        results.show_crowd(name, folder, target)
+    talk = _talk(arguments)
+    talk.say(f"wrote {target}")
+    talk.give({target.suffix[1:].replace("png", "picture"): str(target)})
     return 0
 
 

@@ -244,6 +244,20 @@ def draw_preview(spec: RunSpec, motion: TurningMotion, target: Path) -> None:
         (preview_file if target.suffix == ".blend" else preview_picture)(spec, motion, target)
 
 
+def show_crowd(name: str, folder: Path, target: Path) -> None:
+    """Run `bake` or `render` of the crowd in `folder` in a process of its own, and write `target` whole."""
+    if apart.inside_blender() or apart.is_apart():
+        with apart.silenced():
+            from .blender.crowd_files import bake_crowd_file, render_crowd
+
+            (bake_crowd_file if name == "bake" else render_crowd)(folder, target)
+        return
+    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
+        output = str(Path(temporary, target.name).resolve())
+        apart.run_apart([name, str(folder.resolve()), "--output", output])
+        atomic.move_all(Path(temporary), target.parent)
+
+
 def run_blender_command(name: str, recording_path: Path, target: Path, **options: bool) -> None:
     """Run `bake` or `render` of a recording in a process of its own, and write `target` whole.
 

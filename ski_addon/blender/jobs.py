@@ -5,15 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 
 from ..spec import RunSpec
 from ..spec.estimate import show_duration
-
-if TYPE_CHECKING:
-    from ..simulation.recording import Recording
 
 SLICE_SECONDS = 0.08
 """Time to compute between two looks at the window: long slices, because every look costs a redraw."""
@@ -23,8 +20,10 @@ DRAWING_SHARE, LONGEST_PAUSE = 0.15, 2.0
 STEPS = 20
 """Simulation steps between two looks at the clock."""
 
-Job = Generator[tuple[float, str], bool, "Recording"]
-"""Yields (fraction, text); sending True asks it to stop; returns the recording, whole or partial."""
+Job = Generator[tuple[float, str], bool, Any]
+"""Yields (fraction, text); sending True asks it to stop; returns the recording, whole or partial (or what became of a
+crowd).
+"""
 
 
 @dataclass
@@ -56,7 +55,7 @@ def simulation_job(spec: RunSpec, after: tuple[Recording, float] | None = None) 
     return simulation.recording()
 
 
-def run_to_end(job: Job) -> Recording:
+def run_to_end(job: Job) -> Any:
     """Run a job without a window."""
     try:
         while True:
@@ -66,14 +65,18 @@ def run_to_end(job: Job) -> Recording:
 
 
 class JobRunner:
-    """Runs a job in slices from a modal operator's timer, and shows its progress at most four times a second."""
+    """Runs a job in slices from a modal operator's timer, and shows its progress at most four times a second.
 
-    def __init__(self, job: Job, context: bpy.types.Context) -> None:
+    A job that is not `busy` only looks at what others do: a slice is one look.
+    """
+
+    def __init__(self, job: Job, context: bpy.types.Context, *, busy: bool = True) -> None:
         self._job = job
+        self._busy = busy
         self._started = time.monotonic()
         self._drawn = self._left = 0.0
         self._pause = REDRAW_SECONDS
-        self.result: Recording | None = None
+        self.result: Any = None
         window_manager = context.window_manager
         self._timer = window_manager.event_timer_add(0.01, window=context.window)
         window_manager.progress_begin(0, 100)
@@ -85,8 +88,9 @@ class JobRunner:
         now = time.monotonic()
         if self._left and self._left - self._drawn < 0.01:  # it was drawn since the slice before
             self._pause = min(max(REDRAW_SECONDS, (now - self._left) / DRAWING_SHARE), LONGEST_PAUSE)
-        until = now + SLICE_SECONDS
+        until = now + (SLICE_SECONDS if self._busy else 0.0)
         try:
+            fraction, text = next(self._job)
             while time.monotonic() < until:
                 fraction, text = next(self._job)
         except StopIteration as finished:

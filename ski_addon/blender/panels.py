@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import bpy
 
+from ..crowd.crowd_spec import field_table as crowd_table
 from ..dependencies import missing_dependencies
 from ..errors import SkiAddonError
 from ..spec import RunSpec, row_kinds
 from . import live
+from .frame_rate import scene_rate
 from .gate_heights import off_snow_words
 from .jobs import RUNNING
 from .own_presets import find_preset, laid_over
@@ -20,9 +22,14 @@ from .panel_stages import columns_of, draw_progress, draw_result, draw_words
 from .preferences import is_expert
 from .preset_menus import CLASSES as MENUS
 from .preset_menus import draw_menu_button
-from .properties import run_hash
+from .properties import read_spec, run_hash
 from .shown import settings_of, skier_of, skiers
 
+CROWD_TOP = (
+    *("crowd.count", "crowd.seed", "crowd.start_interval", "crowd.apart"),
+    *("spread.height", "spread.women", "spread.speed", "spread.radius", "spread.knee_bend_deg", "spread.offset"),
+)
+"""Keys of a crowd that matter most, in the order of the tab."""
 PHYSICS_ONLY = "alpine"
 """The kind of figure that the whole physics is for."""
 
@@ -253,6 +260,42 @@ class SKI_PT_bake(_Step, bpy.types.Panel):
         draw_result(layout, settings, "bake", run_hash(settings), columns)
 
 
+class SKI_PT_crowd(_Step, bpy.types.Panel):
+    """Let many ski it."""
+
+    bl_label = "Crowd"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw how many ski and how they differ, and the buttons with their answer."""
+        layout, settings, columns = _prepared(self.layout), settings_of(context), columns_of(context)
+        draw_infos(layout, settings, CROWD_TOP)
+        draw_stage(layout, "ski.crowd", "COMMUNITY", not missing_dependencies())
+        if RUNNING.text:
+            draw_progress(layout, columns)
+        else:
+            draw_result(layout, settings, "crowd", run_hash_at(settings, context.scene), columns)
+        row = layout.column()
+        row.scale_y = 1.3
+        row.enabled = bool(settings.crowd_folder) and not RUNNING.text
+        row.operator("ski.bake_crowd", icon="KEYFRAME_HLT")
+
+
+class SKI_PT_crowd_more(_InTab, bpy.types.Panel):
+    """How they differ."""
+
+    bl_label = "More"
+    bl_parent_id = "SKI_PT_crowd"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the rest of a crowd's numbers."""
+        layout, settings = _prepared(self.layout), settings_of(context)
+        rest = [key for key in crowd_table() if key not in CROWD_TOP]
+        draw_infos(layout, settings, rest)
+        layout.prop(settings, "crowd_jobs")
+
+
 class SKI_PT_analyse(_Step, bpy.types.Panel):
     """Look into it."""
 
@@ -265,6 +308,19 @@ class SKI_PT_analyse(_Step, bpy.types.Panel):
         layout.enabled = bool(settings.recording)
         layout.operator("ski.show_report", icon="IMAGE_DATA")
         layout.operator("ski.toggle_overlay", icon="OVERLAY", depress=live.STATE.overlay == settings.id_data.name)
+
+
+def draw_infos(layout: Any, settings: Any, keys: Iterable[str]) -> None:
+    """Draw keys of a crowd, one under the other."""
+    draw_fields(layout, settings, [crowd_table()[key] for key in keys])
+
+
+def run_hash_at(settings: Any, scene: bpy.types.Scene) -> str:
+    """Return the hash of the run that a crowd is asked to ski, at the scene's own frame rate."""
+    try:
+        return read_spec(settings).with_tables({"bake": {"fps": scene_rate(scene)}}).content_hash()
+    except SkiAddonError:
+        return ""
 
 
 def _prepared(layout: Any) -> Any:
@@ -347,6 +403,8 @@ CLASSES = (
     SKI_PT_bake,
     _folded("SKI_PT_bake", ("bake",), MORE, None),
     _folded("SKI_PT_bake", ("bake",), EXPERT, None),
+    SKI_PT_crowd,
+    SKI_PT_crowd_more,
     SKI_PT_analyse,
 )
 

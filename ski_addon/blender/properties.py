@@ -12,6 +12,8 @@ from typing import Any
 
 import bpy
 
+from ..crowd.crowd_spec import SECTIONS as CROWD_SECTIONS
+from ..crowd.crowd_spec import section_fields as crowd_fields
 from ..errors import SpecError
 from ..spec import SECTIONS, RunSpec, field_table, list_presets, row_kinds, section_fields
 from ..spec.document import parse_document, write_document
@@ -23,7 +25,7 @@ from .fields import make_properties, read_field, write_field
 from .rows import LISTED, read_rows, row_group, write_rows
 
 DEFAULT_PRESET = "giant_slalom"
-STAGES = ("plan", "simulation", "bake")
+STAGES = ("plan", "simulation", "bake", "crowd")
 """Stages that keep the hash of the run they were made from and what they said, as `<stage>_hash` and `<stage>_text`."""
 
 
@@ -118,6 +120,17 @@ def _section_group(section: str, spec: RunSpec) -> type:
     for info in section_fields(section):
         annotations |= make_properties(info, get_value(spec, info.key), _changed)
     group = type(f"SKI_PG_{section}", (bpy.types.PropertyGroup,), {"__doc__": f"The section [{section}] of a run."})
+    group.__annotations__ = annotations
+    return group
+
+
+def _crowd_group(section: str) -> type:
+    """Return a new property group of one section of a crowd document."""
+    annotations: dict[str, Any] = {}
+    for info in crowd_fields(section):
+        annotations |= make_properties(info, info.default)
+    name = f"SKI_PG_crowd_{section}"
+    group = type(name, (bpy.types.PropertyGroup,), {"__doc__": f"The section [{section}] of a crowd."})
     group.__annotations__ = annotations
     return group
 
@@ -236,6 +249,13 @@ def _settings_group(groups: dict[str, type], lists: dict[str, type], bones: type
         "ground": pointer(name="Ground", type=bpy.types.Collection),
         "gates": pointer(name="Gates", type=bpy.types.Collection),
         "recording": string(name="Recording", options={"HIDDEN"}),
+        "crowd_folder": string(name="Crowd's Recordings", options={"HIDDEN"}),
+        "crowd_collection": pointer(name="Crowd", type=bpy.types.Collection),
+        "crowd_ground": pointer(name="Crowd's Ground", type=bpy.types.Collection),
+        "crowd_jobs": bpy.props.IntProperty(
+            name="Processes", description="How many simulate at the same time; 0 = as many as there are processors",
+            default=0, min=0, max=64,
+        ),
     }  # fmt: skip
     annotations |= _scene_properties() | _bake_properties()
     annotations |= {name: pointer(type=group) for name, group in groups.items()}
@@ -261,6 +281,7 @@ def register() -> None:
     """Make the groups, add `ski` to every object and `ski_skier`, the one shown in the sidebar, to every scene."""
     spec = RunSpec()  # reading the presets takes longer than all of this
     groups = {section: _section_group(section, spec) for section in SECTIONS}
+    groups |= {section: _crowd_group(section) for section in CROWD_SECTIONS}
     lists = {kind: row_group(kind, _changed) for kind in LISTED}
     bones = bone_group()
     settings = _settings_group(groups, lists, bones, spec)

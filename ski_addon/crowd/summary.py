@@ -38,6 +38,7 @@ def summarise(run: CrowdRun) -> dict[str, Any]:
         "stopped": run.stopped,
         "seed": run.spec.crowd.seed,
         "apart_m": run.spec.crowd.apart,
+        "linger_s": linger,
         "least_distance_planned_m": _distance(least(list(planned.values()))),
         "least_distance_m": _distance(least(list(real.values()))),
         "duration_s": max((start.time + _end(run, index) for index, start in starts.items()), default=0.0),

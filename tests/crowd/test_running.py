@@ -19,6 +19,7 @@ from ski_addon.crowd.members import draw_member
 from ski_addon.crowd.planning import load_plans, plan_member
 from ski_addon.crowd.running import run_crowd, steps_here
 from ski_addon.crowd.skiing import kept_outcome, recording_name, ski_member
+from ski_addon.crowd.tracks import STEP
 from ski_addon.errors import Cancelled, SkiAddonError
 from ski_addon.pipeline import make_plan, run_simulation
 from ski_addon.simulation import Recording
@@ -112,7 +113,7 @@ def test_the_skied_ways_are_as_far_apart_as_asked(here, crowd):
         for other in range(one):
             moments = np.arange(0.0, 6.0, 0.001)
             (t, p), (u, q) = clocks[one], clocks[other]
-            both = moments[(moments >= max(t[0], u[0])) & (moments <= min(t[-1], u[-1]) + crowd.crowd.linger)]
+            both = moments[(moments >= max(t[0], u[0])) & (moments <= min(t[-1], u[-1]) + crowd.crowd.linger - STEP)]
             apart = [np.interp(both, t, p[:, k]) - np.interp(both, u, q[:, k]) for k in range(3)]
             found.append(np.linalg.norm(apart, axis=0).min() if len(both) else np.inf)
     assert min(found) == pytest.approx(summary["least_distance_m"], abs=0.02)
