@@ -6,11 +6,8 @@ import bpy
 
 from . import analyse, bake, bones, course, crowd, plan, preset, rows, simulate, skier
 
-_CLASSES = tuple(
-    cls
-    for module in (skier, bones, preset, rows, course, plan, simulate, bake, crowd, analyse)
-    for cls in module.CLASSES
-)
+_MODULES = (skier, bones, preset, rows, course, plan, simulate, bake, crowd, analyse)
+_CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)
 
 
 def register() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -155,7 +157,6 @@ class SKI_OT_bake_crowd(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Bake the crowd of the skier in the tab."""
-        manager = context.window_manager
         try:
             with reported(self):
                 from ..ski_addon.blender.crowd_bake import bake_on_slope
@@ -168,22 +169,23 @@ class SKI_OT_bake_crowd(bpy.types.Operator):
                 if folder is None:
                     hint = "press Simulate Crowd first"
                     raise SpecError("the crowd", problem="was not simulated, or its recordings are gone", hint=hint)
-                manager.progress_begin(0, 100)
-                try:
-                    crowd = read_skied(folder)
-                    made = bake_on_slope(
-                        context.scene,
-                        skier,
-                        crowd,
-                        lambda fraction, _text: manager.progress_update(int(100 * fraction)),
-                    )
-                finally:
-                    manager.progress_end()
+                with _progress(context.window_manager) as progress:
+                    made = bake_on_slope(context.scene, skier, read_skied(folder), progress)
         except Failed:
             return {"CANCELLED"}
         frames = f"frames {made.frame_first:.0f} to {made.frame_last:.0f}"
         self.report({"INFO"}, f"Baked {len(made.armatures)} skiers, {frames}")
         return {"FINISHED"}
+
+
+@contextlib.contextmanager
+def _progress(manager: Any) -> Iterator[Callable[[float, str], None]]:
+    """Show progress at the mouse while the block runs."""
+    manager.progress_begin(0, 100)
+    try:
+        yield lambda fraction, _text: manager.progress_update(int(100 * fraction))
+    finally:
+        manager.progress_end()
 
 
 CLASSES = (SKI_OT_crowd, SKI_OT_bake_crowd)

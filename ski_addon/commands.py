@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import apart, atomic, results
-from .crowd.skied import is_crowd_folder
 from .errors import MissingInputError, SkiAddonError, SpecError
 from .spec import PART_KINDS, RunSpec, estimate, find_document
 from .talk import Talk, json_text, summary_lines
@@ -57,7 +56,7 @@ def plan_command(arguments: argparse.Namespace) -> int:
 def bake_command(arguments: argparse.Namespace) -> int:
     """`bake`: recording (or a run, simulated first), or a crowd -> .blend."""
     talk = _talk(arguments)
-    if is_crowd_folder(Path(arguments.source)):
+    if results.is_crowd(Path(arguments.source)):
         if arguments.changes or arguments.parts:
             raise SpecError("--set", problem="cannot change a crowd that was skied", hint="simulate it again with it")
         return _show_crowd("bake", arguments, "crowd.blend")
@@ -92,7 +91,7 @@ def report_command(arguments: argparse.Namespace) -> int:
 
 def render_command(arguments: argparse.Namespace) -> int:
     """`render`: recording -> one picture of the slope with the skier at several instants; crowd -> its fullest one."""
-    if is_crowd_folder(Path(arguments.source)):
+    if results.is_crowd(Path(arguments.source)):
         return _show_crowd("render", arguments, "crowd.png")
     results.check_blender("rendering")
     path, target = _picture_paths(arguments, "strobe.png")

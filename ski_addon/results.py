@@ -244,6 +244,13 @@ def draw_preview(spec: RunSpec, motion: TurningMotion, target: Path) -> None:
         (preview_file if target.suffix == ".blend" else preview_picture)(spec, motion, target)
 
 
+def is_crowd(folder: Path) -> bool:
+    """Return whether `folder` is that of a crowd."""
+    from .crowd.skied import is_crowd_folder
+
+    return is_crowd_folder(folder)
+
+
 def show_crowd(name: str, folder: Path, target: Path) -> None:
     """Run `bake` or `render` of the crowd in `folder` in a process of its own, and write `target` whole."""
     if apart.inside_blender() or apart.is_apart():

@@ -32,11 +32,8 @@ def read_crowd_spec(settings: Any, scene: bpy.types.Scene) -> CrowdSpec:
     """Return the crowd that a skier's settings ask for: its own run, skied by many; raises `SpecError`."""
     run = read_spec(settings)
     base = run.with_tables({"bake": {"fps": scene_rate(scene)}})  # starts are whole frames of the scene
-    values = {
-        info.key: read_field(getattr(settings, section), info)
-        for section in SECTIONS
-        for info in section_fields(section)
-    }
+    infos = [info for section in SECTIONS for info in section_fields(section)]
+    values = {info.key: read_field(getattr(settings, info.section), info) for info in infos}
     return CrowdSpec((MemberRun(base),), f"{run.name[:100]}, crowd").with_values(values)
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ..spec import RunSpec
 from ..spec.estimate import show_duration
+
+if TYPE_CHECKING:
+    from ..simulation.recording import Recording
 
 SLICE_SECONDS = 0.08
 """Time to compute between two looks at the window: long slices, because every look costs a redraw."""

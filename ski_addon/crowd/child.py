@@ -103,7 +103,7 @@ def raise_failure(exit_code: int, said: str) -> None:
 
 @functools.cache
 def can_start() -> bool:
-    """Return whether a process of its own can simulate: not in every Blender, for instance without a Python to start."""
+    """Return whether a process of its own can simulate: not where, for instance, there is no Python to start."""
     if not sys.executable or not Path(sys.executable).is_file():
         return False
     try:
