@@ -92,8 +92,6 @@ class SKI_OT_crowd(bpy.types.Operator):
 
             context.view_layer.update()  # gates and curves may have been moved a moment ago
             skier = required_skier(context)
-            if skier.ski.figure.kind != "alpine":
-                raise SpecError("figure.kind", skier.ski.figure.kind, hint="choose alpine", problem="has no physics")
             self._skier = skier.name
             self._crowd = read_crowd_spec(skier.ski, context.scene)
             self._folder = crowd_folder(skier.name)

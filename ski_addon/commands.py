@@ -160,6 +160,7 @@ def crowd_command(arguments: argparse.Namespace) -> int:
     """`crowd`: simulate many skiers who differ and stay apart."""
     from .crowd import find_crowd, read_crowd
     from .crowd.expected import describe
+    from .crowd.folder import check_folder, check_space
     from .crowd.running import raise_shortfall
     from .workers import read_jobs
 
@@ -167,12 +168,16 @@ def crowd_command(arguments: argparse.Namespace) -> int:
     given = ((key, getattr(arguments, name)) for name, key in CROWD_OPTIONS.items())
     changes |= {key: value for key, value in given if value is not None}
     parts = [find_document(part, PART_KINDS) for part in arguments.parts]
-    crowd = read_crowd(find_crowd(arguments.spec), parts, changes)
+    source = find_crowd(arguments.spec)
+    crowd = read_crowd(source, parts, changes)
     jobs = min(read_jobs(arguments.jobs), crowd.crowd.count)
     for run in crowd.runs:
         _check_size(run.spec, arguments)
     talk.say(f"{crowd.name}: {describe(crowd, jobs)}")
     with atomic.output_folder(arguments.output) as folder:
+        if not arguments.force:
+            check_folder(crowd, folder, source)
+            check_space(crowd, folder)
         summary, lines = results.run_crowd(crowd, folder, jobs, talk)
     for line in lines:
         talk.say(line)

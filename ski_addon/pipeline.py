@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from .body import SkierModel, build_skier_model
 from .course import Track, build_track
-from .errors import SpecError
 from .planning import MotionPlan, as_planned, plan_motion
 from .simulation import Progress, Recording, Simulation, check_pushes, resume, simulate
 from .spec import RunSpec
@@ -30,11 +29,7 @@ def make_plan(spec: RunSpec) -> Planned:
     Raises `SpecError` for a bad document or a figure that is no alpine skier, and `PlanInfeasible` for a track that
     cannot be skied.
     """
-    spec.validate()
-    if spec.figure.kind != "alpine":
-        hint = 'show it with the command preview, or set figure.kind to "alpine"'
-        problem = "has no whole physics, which is for alpine skiers"
-        raise SpecError("figure.kind", spec.figure.kind, hint=hint, problem=problem)
+    spec.validate().check_physics()
     terrain = build_terrain(spec.slope)
     believed = as_planned(spec)
     track = build_track(believed, terrain)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..body import build_skeleton
 from ..crowd.skied import SkiedCrowd, SkiedMember
+from ..crowd.skiing import check_whole
 from ..frames import Array
 from ..simulation.recording import Recording
 from ..spec import BakeSpec, RunSpec
@@ -58,6 +59,8 @@ def bake_crowd(
     One recording is held in memory at a time. `world_from_run` (4, 4) is where the run lies; the frame range of the
     scene is set. Raises `SkiAddonError`.
     """
+    for member in crowd.members:  # before anything is taken away
+        check_whole(member.path)
     clear_crowd(collection)
     made, matrix = CrowdBake(), np.eye(4) if world_from_run is None else world_from_run
     whole: list[tuple[Array, Ride]] = []

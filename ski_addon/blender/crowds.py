@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import time
 from collections.abc import Mapping
@@ -15,6 +16,7 @@ from ..crowd.crowd_spec import SECTIONS, CrowdSpec, MemberRun, section_fields
 from ..crowd.documents import write_crowd
 from ..crowd.running import steps_here
 from ..crowd.skied import is_crowd_folder, read_skied
+from ..crowd.skiing import recordings_in
 from ..crowd.summary import SUMMARY
 from ..spec.estimate import show_bytes
 from ..workers import read_jobs
@@ -99,10 +101,11 @@ def crowd_job(crowd: CrowdSpec, folder: Path, jobs: int = 0) -> Job:
                 return None
             raise_failure(exit_code, said)
     else:
-        for fraction, text in steps_here(crowd, folder):
-            stop = yield fraction, text
-            if stop:
-                break
+        with contextlib.closing(steps_here(crowd, folder)) as steps:
+            for fraction, text in steps:
+                stop = yield fraction, text
+                if stop:
+                    break
     return read_skied(folder).summary if is_crowd_folder(folder) else None
 
 
@@ -128,7 +131,7 @@ def crowd_lines(summary: Mapping[str, Any]) -> list[str]:
 def _forget(crowd: CrowdSpec, folder: Path) -> None:
     """Take away the summary of an earlier crowd, and recordings past the count of this one."""
     (folder / SUMMARY).unlink(missing_ok=True)
-    for path in folder.glob("member_*.npz"):
+    for path in recordings_in(folder):
         number = path.stem.removeprefix("member_")
         if number.isdigit() and int(number) > crowd.crowd.count:
             path.unlink(missing_ok=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from ..errors import SpecError
+from ..errors import SpecError, show_value
 from ..spec import FieldInfo, RunSpec
 from ..spec.fields import field_infos
 from ..spec.values import canonical, check, parse_text
@@ -18,6 +18,8 @@ SECTIONS: Mapping[str, type] = MappingProxyType({"crowd": StartSpec, "spread": S
 """Section name -> its dataclass, in document order."""
 ROWS = FieldInfo("run", "rows", (), "Runs that the members ski", label="Runs", high=200, row=MemberRunSpec)
 """The rows `[[run]]` of a crowd document."""
+EVERYWHERE = "all"
+"""Table of a crowd document with what is laid over every run: `[all.simulation]` and so on."""
 SHIFTED = ("plane", "bumps")
 """Grounds that are the same some metres to the side, so that a run can lie there."""
 
@@ -48,8 +50,9 @@ class CrowdSpec:
         if not self.runs:
             raise SpecError("run", problem="is missing", hint="write [[run]] with a spec for what the members ski")
         for number, run in enumerate(self.runs, start=1):
-            run.spec.validate()
+            run.spec.validate().check_physics()
             self._check_line(number, run)
+            self._check_ground(number, run)
         return self
 
     def with_values(self, changes: Mapping[str, Any]) -> CrowdSpec:
@@ -89,6 +92,16 @@ class CrowdSpec:
             thing = "the gates" if run.spec.course.kind == "gates" else "what they go round"
             problem = f"moves lines away from {thing} of run {number}"
             raise SpecError("spread.offset", self.spread.offset, problem=problem, hint=hint)
+
+    def _check_ground(self, number: int, run: MemberRun) -> None:
+        """All ski on one slope: that of the first run."""
+        first = self.runs[0].spec.slope
+        for name in vars(first):
+            mine, here = getattr(first, name), getattr(run.spec.slope, name)
+            if mine != here:
+                hint = f"give all runs the same slope, for instance under [{EVERYWHERE}.slope]"
+                problem = f"is not that of run 1 ({show_value(mine)}), and a crowd skis on one slope"
+                raise SpecError(f"run {number}: slope.{name}", here, hint=hint, problem=problem)
 
 
 @functools.cache

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from .. import atomic
-from ..errors import SpecError
+from ..errors import SkiAddonError, SpecError
 from ..spec import PART_KINDS, FieldInfo, RunSpec, find_document
 from ..spec.document import SourceDocument, parse_document, read_text, write_document
 from ..spec.row_values import check_rows, read_rows
 from ..spec.values import check
-from .crowd_spec import ROWS, SECTIONS, CrowdSpec, MemberRun, find_field
+from .crowd_spec import EVERYWHERE, ROWS, SECTIONS, CrowdSpec, MemberRun, find_field
 from .sections import MemberRunSpec
 
 CROWD_KIND = "crowds"
 """Folder of the shipped crowds in presets/."""
-ALL = "all"
-"""Table of what is laid over every run: `[all.simulation]` and so on."""
-KEYS = ("name", "description", *SECTIONS, ROWS.key, ALL)
+DOCUMENT = "crowd.toml"
+"""Name of a crowd's document in the folder of its recordings."""
+KEYS = ("name", "description", *SECTIONS, ROWS.key, EVERYWHERE)
 TEXTS = {"name": 120, "description": 2000}
 
 
@@ -58,8 +59,14 @@ def read_crowd(path: str | Path, parts: Sequence[Path] = (), changes: Mapping[st
         return made.validate().with_values(own)
 
 
-def write_crowd(crowd: CrowdSpec, folder: Path, name: str = "crowd.toml") -> Path:
-    """Write `crowd` into `folder`, each run as a document of its own beside it; returns the crowd's path."""
+def write_crowd(crowd: CrowdSpec, folder: Path, name: str = DOCUMENT) -> Path:
+    """Write `crowd` into `folder`, each run as a document of its own beside it; returns the crowd's path.
+
+    A document there that asks for the very same crowd is left as it is, with its comments.
+    """
+    with contextlib.suppress(SkiAddonError):
+        if read_crowd(folder / name) == crowd:
+            return folder / name
     rows = []
     for number, run in enumerate(crowd.runs, start=1):
         document = f"run_{number}.toml"
@@ -91,9 +98,10 @@ def _read(source: SourceDocument, folder: Path) -> CrowdSpec:
         check(find_field(key), value)
     rows = read_rows(ROWS, content.get(ROWS.key, []))
     check_rows(ROWS, rows, check)
-    everywhere = content.get(ALL, {})
+    everywhere = content.get(EVERYWHERE, {})
     if not isinstance(everywhere, Mapping):
-        raise SpecError(ALL, everywhere, problem="is not a table", hint=f"write [{ALL}.simulation] and so on")
+        hint = f"write [{EVERYWHERE}.simulation] and so on"
+        raise SpecError(EVERYWHERE, everywhere, problem="is not a table", hint=hint)
     runs = tuple(_read_run(number, row, folder, everywhere) for number, row in enumerate(rows, start=1))
     name, description = (_text(key, content.get(key, "")) for key in TEXTS)
     return CrowdSpec(runs, name or CrowdSpec.name, description).with_values(values)
@@ -111,8 +119,8 @@ def _read_run(number: int, row: MemberRunSpec, folder: Path, everywhere: Mapping
         try:
             spec = spec.with_tables(everywhere)
         except SpecError as error:
-            named = SpecError(f"{ALL}.{error.field}", error.value, error.allowed, error.hint, problem=error.problem)
-            raise named from None
+            key = f"{EVERYWHERE}.{error.field}"
+            raise SpecError(key, error.value, error.allowed, error.hint, problem=error.problem) from None
     return MemberRun(spec, row.repeat, float(row.offset))
 
 

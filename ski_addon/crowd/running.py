@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,12 +24,15 @@ Progress = Callable[[float, str], Any]
 HERE = 0
 """Number of processes that means: in this one."""
 
+SAVE_SECONDS, SAVE_SHARE = 20.0, 0.02
+"""Least time between two writings of crowd.json on the way [s], and the largest share of the time that they take."""
+
 
 @dataclass
 class CrowdRun:
     """A crowd on its way: what is known so far of each member, by index.
 
-    `planning_s` and `skiing_s` are waiting times [s]; `stopped` says that it was interrupted.
+    `planning_s` and `skiing_s` are waiting times [s]; `stopped` says that it is not at its end.
     """
 
     spec: CrowdSpec
@@ -40,30 +43,42 @@ class CrowdRun:
     outcomes: dict[int, Outcome] = field(default_factory=dict)
     planning_s: float = 0.0
     skiing_s: float = 0.0
-    stopped: bool = False
+    stopped: bool = True
 
 
 def run_crowd(spec: CrowdSpec, folder: Path, jobs: int, progress: Progress) -> dict[str, Any]:
     """Plan and ski the crowd `spec` in `jobs` processes (0: in this one); returns what is in crowd.json.
 
     Into `folder` go crowd.toml with its runs, each member's recording as soon as it is finished, and crowd.json.
-    Members that were skied there before are kept. What is done when it is interrupted stays, crowd.json says what, and
-    `Cancelled` is raised; the same call goes on from there.
+    Members that were skied there before are kept. What is done when it is interrupted or fails stays, crowd.json says
+    what, and `Cancelled` or the failure is raised; the same call goes on from there.
     """
-    run = CrowdRun(spec, folder, jobs)
-    clean_up(folder)
-    write_crowd(spec, folder)
+    run = begin(spec, folder, jobs)
     try:
         with _pool(jobs) as pool:
             _plan(run, pool, progress)
             run.starts = find_starts(spec, _ways(run.plans), frame_rate(spec))
             _ski(run, pool, progress)
-            _settle(run)
+        _settle(run)
     except (KeyboardInterrupt, Cancelled):
-        run.stopped = True
         write_summary(run)
         raise Cancelled(_stopped_words(run)) from None
+    except SkiAddonError:  # of a disk that is full, a process that was killed
+        with contextlib.suppress(SkiAddonError):
+            write_summary(run)
+        raise
     return write_summary(run)
+
+
+def begin(spec: CrowdSpec, folder: Path, jobs: int) -> CrowdRun:
+    """Return the crowd `spec` before anything is known of its members, its documents written into `folder`.
+
+    What an earlier crowd said of itself there goes: its starts would be wrong for other members.
+    """
+    clean_up(folder)
+    write_crowd(spec, folder)
+    (folder / SUMMARY).unlink(missing_ok=True)
+    return CrowdRun(spec, folder, jobs)
 
 
 def frame_rate(spec: CrowdSpec) -> float:
@@ -80,14 +95,12 @@ def write_summary(run: CrowdRun) -> dict[str, Any]:
     return summary
 
 
-def steps_here(spec: CrowdSpec, folder: Path) -> Iterator[tuple[float, str]]:
+def steps_here(spec: CrowdSpec, folder: Path) -> Generator[tuple[float, str], None, None]:
     """Run a crowd in this process a member at a time, as (fraction, text) to show; to stop, do not go on.
 
     For where no processes can be started; see `run_crowd`.
     """
-    run = CrowdRun(spec, folder, HERE)
-    clean_up(folder)
-    write_crowd(spec, folder)
+    run = begin(spec, folder, HERE)
     run.plans = load_plans(folder, spec)
     for index in range(spec.crowd.count):
         yield 0.1 * index / spec.crowd.count, f"planning: {index} of {spec.crowd.count}"
@@ -96,10 +109,14 @@ def steps_here(spec: CrowdSpec, folder: Path) -> Iterator[tuple[float, str]]:
     save_plans(folder, spec, run.plans)
     run.starts = find_starts(spec, _ways(run.plans), frame_rate(spec))
     placed = _placed(run)
-    for done, index in enumerate(placed):
-        yield 0.1 + 0.9 * done / len(placed), f"skiing: {done} of {len(placed)}"
-        run.outcomes[index] = ski_member(run.plans[index].member, folder)
-        write_summary(run)
+    try:
+        for done, index in enumerate(placed):
+            yield 0.1 + 0.9 * done / len(placed), f"skiing: {done} of {len(placed)}"
+            run.outcomes[index] = ski_member(run.plans[index].member, folder)
+    except (GeneratorExit, SkiAddonError):
+        with contextlib.suppress(SkiAddonError):
+            write_summary(run)
+        raise
     _settle(run)
     write_summary(run)
 
@@ -129,8 +146,11 @@ def _ski(run: CrowdRun, pool: ProcessPoolExecutor | None, progress: Progress) ->
             run.outcomes[index] = kept
     tasks = [(run.plans[index].member, run.folder) for index in _placed(run) if index not in run.outcomes]
 
+    now_and_then = _Seldom(lambda: write_summary(run))
+
     def keep(outcome: Outcome) -> None:
         run.outcomes[outcome.index] = outcome
+        now_and_then()
 
     try:
         _each(pool, ski_member, tasks, progress, "skiing", keep)
@@ -139,11 +159,31 @@ def _ski(run: CrowdRun, pool: ProcessPoolExecutor | None, progress: Progress) ->
         run.skiing_s = time.perf_counter() - begin
 
 
+class _Seldom:
+    """Does `work` when called, but neither at once nor so often that it takes more than a small share of the time.
+
+    So that somebody who is killed leaves a crowd.json of nearly all that was done.
+    """
+
+    def __init__(self, work: Callable[[], Any]) -> None:
+        self._work = work
+        self._next = time.perf_counter() + SAVE_SECONDS
+
+    def __call__(self) -> None:
+        """Do it if it is time."""
+        begin = time.perf_counter()
+        if begin >= self._next:
+            self._work()
+            end = time.perf_counter()
+            self._next = end + max(SAVE_SECONDS, (end - begin) / SAVE_SHARE)
+
+
 def _settle(run: CrowdRun) -> None:
     """Find the starts anew from the ways that were skied, which differ a little from the plans.
 
     Nothing has to be skied again for it: when somebody starts changes nothing in how he skis.
     """
+    run.stopped = False
     run.starts |= find_starts(run.spec, {i: outcome.way for i, outcome in run.outcomes.items()}, frame_rate(run.spec))
 
 

@@ -13,14 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Cancelled
+from ..errors import Cancelled, RecordingError
 from .members import Member
 from .tracks import Way, way_of
 
 FINISHED = "finished"
 CHUNK_SECONDS = 0.1
 """Simulated time between two looks at whether to stop [s]."""
-DAMAGE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError)
 
 
 @dataclass(frozen=True)
@@ -46,6 +45,11 @@ class Outcome:
 def recording_name(index: int) -> str:
     """Return the name of the file of the member `index` (from 0)."""
     return f"member_{index + 1:03d}.npz"
+
+
+def recordings_in(folder: Path) -> list[Path]:
+    """Return the recordings of members in `folder`, of whatever crowd."""
+    return sorted(folder.glob("member_[0-9]*.npz"))
 
 
 def ski_member(member: Member, folder: Path, stop: Callable[[], bool] = lambda: False) -> Outcome:
@@ -86,25 +90,47 @@ def ski_member(member: Member, folder: Path, stop: Callable[[], bool] = lambda: 
 def kept_outcome(member: Member, folder: Path) -> Outcome | None:
     """Return what became of `member` in an earlier run, or None if there is no whole recording of just that member.
 
-    Only the places are read, not the whole recording.
+    All bytes are checked, but only the places are kept.
     """
-    from ..simulation.versions import library_versions
+    from ..simulation.recording import DAMAGE
 
     path = folder / recording_name(member.index)
-    if not path.is_file():
+    try:
+        return _read_kept(member, path)
+    except (*DAMAGE, KeyError, TypeError, zipfile.BadZipFile):
         return None
+
+
+def check_whole(path: Path) -> None:
+    """Raise `RecordingError` unless the file of a recording is there and all its bytes are as they were written."""
+    from ..simulation.recording import DAMAGE
+
     try:
         with zipfile.ZipFile(path) as archive:
-            names = set(archive.namelist())
-        with np.load(path, allow_pickle=False) as members:
-            header = json.loads(members["header"].tobytes())
-            if header["spec_hash"] != member.spec.content_hash() or header["versions"] != library_versions():
-                return None
-            moments, place = members["time"], members["com"]
-        if not len(moments) or "end_stop.npy" not in names or header["status"] == "cancelled":
+            damaged = archive.testzip()
+    except FileNotFoundError:
+        raise RecordingError(path, "there is no such file; simulate the crowd again") from None
+    except (*DAMAGE, zipfile.BadZipFile) as problem:
+        raise RecordingError(path, f"it is damaged ({problem}); simulate the crowd again") from None
+    if damaged:
+        raise RecordingError(path, f"{Path(damaged).stem} in it is damaged; simulate the crowd again")
+
+
+def _read_kept(member: Member, path: Path) -> Outcome | None:
+    from ..simulation.recording import array_names
+    from ..simulation.versions import library_versions
+
+    with np.load(path, allow_pickle=False) as members:
+        header = json.loads(members["header"].tobytes())
+        if header["spec_hash"] != member.spec.content_hash() or header["versions"] != library_versions():
             return None
-    except DAMAGE:
+        moments, place = members["time"], members["com"]
+        whole = set(members.files) >= set(array_names())
+    if not len(moments) or not whole or header["status"] == "cancelled":
         return None
+    with zipfile.ZipFile(path) as archive:
+        if archive.testzip():
+            return None
     return Outcome(
         index=member.index,
         status=str(header["status"]),

@@ -31,15 +31,17 @@ def on_clock(way: Way, start: float, linger: float) -> tuple[int, np.ndarray]:
     """Return where someone who starts at `start` [s] is on the crowd's clock.
 
     A whole number i of steps, and places (m, 3) at the times i, i + 1, ... steps: from less than a step before the
-    start, as if skiing already, until `linger` [s] past the end, less than a step short of
-    it, while the skier stands there.
+    start, as if skiing already, until less than a step after `linger` [s] past the end, while the skier stands there.
+    Who does not linger is taken to ski on for that rest of a step.
     """
     first = int(np.floor(start / STEP + 1e-9))
-    last = max(int(np.floor((start + way.duration + linger) / STEP + 1e-9)), first + 1)
+    last = max(int(np.ceil((start + way.duration + linger) / STEP - 1e-9)), first + 1)
     moments = (np.arange(first, last + 1) * STEP - start) / STEP
     own = np.arange(len(way.place))
     place = np.stack([np.interp(moments, own, column) for column in way.place.T], axis=1)
     place[0] += min(float(moments[0]), 0.0) * (way.place[1] - way.place[0])
+    if linger < STEP and len(place) > 2:
+        place[-1] = 2.0 * place[-2] - place[-3]
     return first, place
 
 

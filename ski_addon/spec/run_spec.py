@@ -10,6 +10,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from ..errors import SpecError
 from . import document, row_values, table, values
 from .fields import ROWS, rows, text
 from .figure_section import FigureSpec
@@ -123,6 +124,13 @@ class RunSpec:
         for key, info in table.field_table().items():
             values.check(info, table.get_value(self, key), self)
         return self
+
+    def check_physics(self) -> None:
+        """Raise `SpecError` if it is a run of a figure that can only be shown by the instant preview."""
+        if self.figure.kind != "alpine":
+            hint = 'show it with the command preview, or set figure.kind to "alpine"'
+            problem = "has no whole physics, which is for alpine skiers"
+            raise SpecError("figure.kind", self.figure.kind, hint=hint, problem=problem)
 
     def content_hash(self) -> str:
         """Return the SHA-256 hex digest of the canonical document and its schema version."""

@@ -77,6 +77,10 @@ RUN = '[[run]]\nspec = "medium_carving"\n'
             "spread.offset = 3.0 moves lines away from the gates",
         ),
         ("[spread]\noffset = 3\n" + '[[run]]\nspec = "moguls"\n', "moves a line off the ground it is made for"),
+        ('[[run]]\nspec = "snowboard_carving"\n', 'figure.kind = "snowboard" has no whole physics'),
+        (RUN + '[[run]]\nspec = "short_turns"\n', "run 2: slope.angle_deg = 8.0 is not that of run 1 (8.5)"),
+        ("[spread]\nhight = 1\n" + RUN, "line 2: spread.hight is not a key of a crowd: did you mean spread.height"),
+        ("[spread]\nradius = -0.1\n" + RUN, "line 2: spread.radius = -0.1 is outside 0..0.5"),
         ('[[run]]\nspec = "rolling_slalom"\noffset = 3\n', "run 1: offset = 3.0 moves a line off the ground"),
     ],
 )
@@ -97,6 +101,23 @@ def test_what_is_missing_is_named(tmp_path):
         find_crowd("free_sking")
     with pytest.raises(MissingInputError, match=r"crowds/giant_slalom_race or runs/giant_slalom_race"):
         find_crowd("giant_slalom_race")
+
+
+@pytest.mark.parametrize(
+    ("row", "words"), [('style = "racign"', "did you mean racing"), ('skier = "no.toml"', r"no\.toml")]
+)
+def test_an_unknown_part_is_named(tmp_path, row, words):
+    path = tmp_path / "bad.toml"
+    path.write_text(f"{RUN}{row}\n", encoding="utf-8")
+    with pytest.raises(MissingInputError, match=words):
+        read_crowd(path)
+
+
+def test_a_document_with_comments_is_left_as_it_is(tmp_path):
+    path = tmp_path / "crowd.toml"
+    path.write_text(f"# mine\n{RUN}", encoding="utf-8")
+    assert write_crowd(read_crowd(path), tmp_path) == path
+    assert path.read_text(encoding="utf-8").startswith("# mine") and list(tmp_path.iterdir()) == [path]
 
 
 def test_a_changed_key_is_checked():

@@ -18,9 +18,9 @@ from ski_addon.crowd.documents import read_crowd, write_crowd
 from ski_addon.crowd.members import draw_member
 from ski_addon.crowd.planning import load_plans, plan_member
 from ski_addon.crowd.running import run_crowd, steps_here
-from ski_addon.crowd.skiing import kept_outcome, recording_name, ski_member
+from ski_addon.crowd.skiing import check_whole, kept_outcome, recording_name, ski_member
 from ski_addon.crowd.tracks import STEP
-from ski_addon.errors import Cancelled, SkiAddonError
+from ski_addon.errors import Cancelled, OutputError, RecordingError, SkiAddonError
 from ski_addon.pipeline import make_plan, run_simulation
 from ski_addon.simulation import Recording
 from tests.crowd.crowds import crowd_of
@@ -100,7 +100,7 @@ def test_the_folder_holds_what_is_promised(command):
 
 
 def test_the_skied_ways_are_as_far_apart_as_asked(here, crowd):
-    """Measured anew, every millisecond, from the recordings alone."""
+    """Measured anew, every millisecond, from the recordings alone. Ours looks on for the rest of a step at most."""
     folder, summary = here
     assert summary["finished"] == 3 and summary["least_distance_m"] >= 3.0
     clocks = []
@@ -111,13 +111,14 @@ def test_the_skied_ways_are_as_far_apart_as_asked(here, crowd):
     found = []
     for one in range(3):
         for other in range(one):
-            moments = np.arange(0.0, 6.0, 0.001)
+            moments = np.arange(0.0, 12.0, 0.001)
             (t, p), (u, q) = clocks[one], clocks[other]
-            both = moments[(moments >= max(t[0], u[0])) & (moments <= min(t[-1], u[-1]) + crowd.crowd.linger - STEP)]
+            both = moments[(moments >= max(t[0], u[0])) & (moments <= min(t[-1], u[-1]) + crowd.crowd.linger)]
             apart = [np.interp(both, t, p[:, k]) - np.interp(both, u, q[:, k]) for k in range(3)]
             found.append(np.linalg.norm(apart, axis=0).min() if len(both) else np.inf)
-    assert min(found) == pytest.approx(summary["least_distance_m"], abs=0.02)
-    assert min(found) >= 3.0 - 0.02
+    fastest = max(np.diff(place, axis=0).max() / (moment[1] - moment[0]) for moment, place in clocks)
+    assert min(found) >= summary["least_distance_m"] - 0.02 >= 3.0 - 0.02
+    assert min(found) <= summary["least_distance_m"] + fastest * STEP
 
 
 def test_what_is_done_is_kept_and_said(here, crowd, tmp_path):
@@ -137,6 +138,74 @@ def test_another_crowd_in_the_same_folder_keeps_only_its_own(here, crowd):
     more = crowd.with_values({"crowd.count": 4, "crowd.apart": 1})
     assert sorted(load_plans(here[0], more)) == [0, 1, 2]
     assert load_plans(here[0], crowd.with_values({"spread.height": 0.01})) == {}
+
+
+def flip_a_byte(path):
+    """Damage the middle of a file, where the archive's table of contents is not."""
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 0xFF
+    path.write_bytes(bytes(content))
+
+
+def test_a_recording_with_a_wrong_byte_is_skied_again(here, crowd, tmp_path):
+    path = tmp_path / recording_name(0)
+    path.write_bytes(recordings(here[0])[path.name])
+    check_whole(path)
+    assert kept_outcome(draw_member(crowd, 0), tmp_path).kept
+    flip_a_byte(path)
+    assert kept_outcome(draw_member(crowd, 0), tmp_path) is None
+    with pytest.raises(RecordingError, match=r"member_001\.npz: .*damaged.*simulate the crowd again"):
+        check_whole(path)
+    for nothing in (b"", b"text", recordings(here[0])[path.name][:5000]):
+        path.write_bytes(nothing)
+        assert kept_outcome(draw_member(crowd, 0), tmp_path) is None
+        with pytest.raises(RecordingError, match="simulate the crowd again"):
+            check_whole(path)
+
+
+def test_a_full_disk_is_one_line_and_what_is_done_is_kept(crowd, tmp_path, monkeypatch):
+    from ski_addon.crowd import running
+
+    real = running.ski_member
+
+    def full(member, folder):
+        if member.index == 1:
+            raise OutputError(folder, "No space left on device")
+        return real(member, folder)
+
+    monkeypatch.setattr(running, "ski_member", full)
+    with pytest.raises(OutputError, match="No space left"):
+        run_crowd(crowd, tmp_path, 0, quiet)
+    summary = json.loads((tmp_path / "crowd.json").read_text())
+    assert [member["status"] for member in summary["members"]] == ["finished", "waiting", "waiting"]
+    assert summary["stopped"] and list(recordings(tmp_path)) == ["member_001.npz"]
+
+
+def test_a_crowd_that_is_killed_leaves_what_it_said_on_the_way(crowd, tmp_path, monkeypatch):
+    from ski_addon.crowd import running
+
+    (tmp_path / "crowd.json").write_text("of another crowd")
+    real, seen = running.ski_member, []
+
+    def watched(member, folder):
+        path = folder / "crowd.json"
+        seen.append([m["status"] for m in json.loads(path.read_text())["members"]] if path.exists() else None)
+        return real(member, folder)
+
+    monkeypatch.setattr(running, "ski_member", watched)
+    monkeypatch.setattr(running, "SAVE_SECONDS", 0.0)
+    monkeypatch.setattr(running, "SAVE_SHARE", 1e9)
+    run_crowd(crowd, tmp_path, 0, quiet)
+    assert seen == [None, ["finished", "waiting", "waiting"], ["finished", "finished", "waiting"]]
+
+
+def test_steps_that_are_not_gone_on_with_leave_what_is_done(crowd, tmp_path):
+    steps = steps_here(crowd, tmp_path)
+    while not list(tmp_path.glob("member_*.npz")):
+        next(steps)
+    steps.close()
+    summary = json.loads((tmp_path / "crowd.json").read_text())
+    assert summary["stopped"] and summary["finished"] == 1
 
 
 def test_steps_in_this_process_do_the_same(here, crowd, tmp_path):
@@ -234,6 +303,16 @@ def test_files_of_killed_processes_are_cleaned_up(tmp_path, crowd):
     ("arguments", "code", "words"),
     [
         (["medium_carving", "--count=0"], 2, "crowd.count = 0 is outside 1..999 skiers"),
+        (["medium_carving", "--count=-3"], 2, "crowd.count = -3 is outside 1..999 skiers"),
+        (["medium_carving", "--count=1000"], 2, "crowd.count = 1000 is outside 1..999 skiers"),
+        (["medium_carving", "--set=spread.height=0.4"], 2, "spread.height = 0.4 is outside 0..0.3 m"),
+        (["medium_carving", "--set=spread.women=1.5"], 2, "spread.women = 1.5 is outside 0..1"),
+        (["medium_carving", "--apart=-1"], 2, "crowd.apart = -1 is outside 0..50 m"),
+        (["medium_carving", "--interval=nan"], 2, "crowd.start_interval = nan"),
+        (["medium_carving", "--part=natrual"], 3, "did you mean natural?"),
+        (["snowboard_carving"], 2, 'figure.kind = "snowboard" has no whole physics'),
+        (["free_skeing"], 3, "did you mean free_skiing"),
+        (["medium_carving", "--count=999", "--set=course.turn_count=500"], 3, "the crowd would take"),
         (["medium_carving", "--seed=x"], 2, 'crowd.seed = "x" is not a whole number'),
         (["medium_carving", "--jobs=0"], 2, "--jobs = 0 is outside 1..1024"),
         (["medium_carving", "--set=spread.hight=0.1"], 2, "did you mean spread.height?"),

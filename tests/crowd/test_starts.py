@@ -43,7 +43,12 @@ def test_a_way_on_the_crowds_clock_is_that_way():
     first, place = on_clock(way, 0.25, 0.5)
     assert first == 2 and place[0].tolist() == pytest.approx([-0.25, 0.0, 0.0])  # as if it came from above
     assert place[3, 0] == pytest.approx(5.0 * (0.5 - 0.25))
-    assert place[-1, 0] == place[-4, 0] == 10.0  # stands at its end for half a second
+    assert place[-1, 0] == place[-4, 0] == 10.0 and first + len(place) - 1 == 28  # stands there until 2.75 s
+
+
+def test_who_does_not_linger_is_looked_at_to_the_very_end():
+    first, place = on_clock(straight_way(speed=5.0, duration=2.0), 0.25, 0.0)
+    assert first + len(place) - 1 == 23 and place[-1, 0] == pytest.approx(5.0 * (2.3 - 0.25))
 
 
 def test_a_way_is_sampled_from_uneven_times():
