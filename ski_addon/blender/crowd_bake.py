@@ -36,12 +36,15 @@ THINNED = 50
 
 @dataclass
 class CrowdBake:
-    """What a bake of a crowd made: the `armatures`, the frames it goes over, and the `ride` of them all together."""
+    """What a bake of a crowd made: the `armatures`, the frames it goes over, and the `ride` of them all together.
+
+    `courses` are what each one skied, and how far to the left [m].
+    """
 
     armatures: list[bpy.types.Object] = field(default_factory=list)
     frame_first: float = np.inf
     frame_last: float = -np.inf
-    run: RunSpec | None = None
+    courses: list[tuple[RunSpec, float]] = field(default_factory=list)
     ride: Ride | None = None
 
 
@@ -72,7 +75,7 @@ def bake_crowd(
         made.armatures.append(result.armature)
         made.frame_first = min(made.frame_first, result.frame_first)
         made.frame_last = max(made.frame_last, result.frame_last + crowd.linger * scene_rate(scene))
-        made.run = made.run or recorded_run(recording)
+        made.courses.append((recorded_run(recording), member.offset))
         whole.append(_moved_ride(recording, member.offset))
     made.ride = _one_ride(whole)
     scene.frame_start, scene.frame_end = int(np.ceil(made.frame_first)), int(np.floor(made.frame_last))
@@ -185,9 +188,9 @@ def bake_on_slope(
         scene.collection.children.link(settings.crowd_collection)
     matrix, keys = world_from_run(settings), key_options(settings)
     made = bake_crowd(crowd, scene, settings.crowd_collection, options, matrix, keys, progress)
-    if made.ride is not None and made.run is not None:
-        own_mesh = settings.slope_mesh is not None
-        place = Place(settings.start, own_mesh, gate_objects(settings, made.run), settings.tracks)
+    if made.ride is not None:
+        own_mesh, run = settings.slope_mesh is not None, made.courses[0][0]
+        place = Place(settings.start, own_mesh, gate_objects(settings, run), settings.tracks)
         ground = settings.crowd_ground or settings.ground
-        settings.crowd_ground = renew_ground(made.ride, made.run, scene, ground, options, place)
+        settings.crowd_ground = renew_ground(made.ride, run, scene, ground, options, place)
     return made

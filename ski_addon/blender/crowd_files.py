@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +17,15 @@ if TYPE_CHECKING:
     from ..crowd.skied import SkiedCrowd
     from ..frames import Array
     from ..spec import RunSpec
+    from .stage import Stage
 
 SIZE = (1600, 900)
 SAMPLES = 20
 FILL = 0.86
 MOST_SEEN = 100.0
 """Length of the slope that a picture shows at most [m]: farther apart skiers are too small."""
+LOOK = 5
+"""Steps between two moments that are looked at for a picture."""
 HEIGHT_DEG, AZIMUTH_DEG = 24.0, 28.0
 """Where the camera of a picture stands, from the way down: over the slope, and to the side."""
 
@@ -71,9 +75,29 @@ def _stage(folder: Path, size: tuple[int, int] = SIZE, samples: int = SAMPLES, s
         set_up(scene, size, samples)
     made = bake_crowd(crowd, scene, add_collection(scene, "Crowd"), spec.bake)
     if made.ride is not None:
-        stage_ride(made.ride, spec, scene)
+        stage = stage_ride(made.ride, spec, scene)
+        _stand_gates(made.courses, stage, scene)
     _look(scene, crowd, spec)
     return scene, spec
+
+
+def _stand_gates(courses: Sequence[tuple[RunSpec, float]], stage: Stage, scene: bpy.types.Scene) -> None:
+    """Stand the gates of every course where it was skied, each once; `stage` has those of the first, not yet moved."""
+    from ..course import course_gates
+    from .gates import build_gates
+    from .stage import add_collection
+
+    collection = stage.gates[0][0].users_collection[0] if stage.gates else None
+    seen: set[tuple[bytes, float]] = set()
+    for number, (spec, offset) in enumerate(courses):
+        gates = course_gates(spec, stage.terrain)
+        if gates is None or (gates.position.tobytes(), offset) in seen:
+            continue
+        seen.add((gates.position.tobytes(), offset))
+        collection = collection or add_collection(scene, "Gates")
+        built = build_gates(spec, stage.terrain, collection) if number else stage.gates
+        for obj in [obj for objects in built for obj in objects]:
+            obj.location.y += offset
 
 
 def _look(scene: bpy.types.Scene, crowd: SkiedCrowd, spec: RunSpec) -> None:
@@ -89,7 +113,10 @@ def _look(scene: bpy.types.Scene, crowd: SkiedCrowd, spec: RunSpec) -> None:
 
 
 def fullest_moment(crowd: SkiedCrowd) -> tuple[float, Array]:
-    """Return the time [s] at which most skiers are within `MOST_SEEN` of each other, and where they are (k, 3) [m]."""
+    """Return the time [s] at which most skiers are within `MOST_SEEN` of each other, and where they are (k, 3) [m].
+
+    Where there are many such moments it is the middle one: at the first and last ones they only just start or stop.
+    """
     from ..crowd.tracks import STEP, on_clock, way_of
     from ..simulation.recording import Recording
 
@@ -99,16 +126,15 @@ def fullest_moment(crowd: SkiedCrowd) -> tuple[float, Array]:
         way = way_of(recording.time, recording.com, float(recording.time[-1]))
         first, place = on_clock(way, member.start, 0.0)
         placed.append((first, place + (0.0, member.offset, 0.0)))
-    best: tuple[int, float, float, Array] | None = None
-    for step in range(min(first for first, _ in placed), max(first + len(place) for first, place in placed), 5):
+    moments: list[tuple[float, Array]] = []
+    for step in range(min(first for first, _ in placed), max(first + len(place) for first, place in placed), LOOK):
         there = np.array([place[step - first] for first, place in placed if 0 < step - first < len(place)])
-        if not len(there):
-            continue
-        along = there[:, 0]
-        near = max((there[(along >= low) & (along <= low + MOST_SEEN)] for low in along), key=len)
-        found = (len(near), -float(np.ptp(near[:, 0])), step * STEP, near)
-        if best is None or found[:2] > best[:2]:
-            best = found
-    if best is None:
+        if len(there):
+            along = there[:, 0]
+            near = max((there[(along >= low) & (along <= low + MOST_SEEN)] for low in along), key=len)
+            moments.append((step * STEP, near))
+    if not moments:
         return 0.0, placed[0][1][:1]
-    return best[2], best[3]
+    most = max(len(near) for _, near in moments)
+    fullest = [moment for moment in moments if len(moment[1]) == most]
+    return fullest[len(fullest) // 2]
