@@ -1,8 +1,9 @@
 """Crowds: what a second process is worth, and what a worker remembers: `python -m benchmarks.crowd`.
 
-The same members are skied by one process and by two in turn, in one run: programs beside it slow both down. A machine
-that is busy has no second processor to give, so the ratio is also given by processor time: what two processes would
-reach if each had a processor to itself. Memory is the most a process has ever held, as the system counts it.
+The same members are skied by one process and by two in turn, in one run. A busy machine has no second processor to
+give (Linux shares processors out between sessions, not processes), so the ratio is also given by processor time: what
+two processes reach if each has a processor to itself. Memory is the most a process has ever held, as the system counts
+it. The common table (`python -m benchmarks --only crowd`) has the same in short.
 """
 
 from __future__ import annotations
@@ -16,15 +17,18 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from benchmarks.measuring import How, Measurement, percentiles
 from ski_addon.crowd import CrowdSpec, MemberRun
 from ski_addon.crowd.members import Member, draw_member
 from ski_addon.crowd.skiing import Outcome, recordings_in, ski_member
 from ski_addon.spec import RunSpec, find_document
 from ski_addon.workers import run_all, worker_pool
 
+SUBJECT = "crowd"
 RUN = "paper_main"
 MEMBERS, TURNS = 4, 2
 """Skiers of a round, and the turns of each: some seconds of skiing."""
@@ -111,6 +115,21 @@ def ski_timed(member: Member, folder: Path, stop: Callable[[], bool]) -> tuple[O
     return outcome, time.process_time() - worked
 
 
+def measurements(how: How) -> list[Measurement]:
+    """Return the rows of the common table; nothing of it is judged, for it is as much the machine's as ours."""
+    found = measure(how.rounds(5, 1), how.rounds(3, 1), how.rounds(TURNS, 1))
+    beside = {"peer": "one process", "peer_ratio": float(1.0 / np.median(found.ratios))}
+    alone = {"peer": "one process", "peer_ratio": float(1.0 / np.median(found.by_work))}
+    megabytes = [size / 1e6 for size in found.memory]
+    return [
+        _row("skiing by one process", "s/s", found.one),
+        _row("skiing by two", "s/s", found.two, **beside),
+        _row("two, by processor time", "x", found.by_work, **alone),
+        _row("peak memory of a worker", "MB", megabytes),
+        _row("and a second more of a run", "MB", [found.per_second / 1e6]),
+    ]
+
+
 def table(found: CrowdFigures) -> str:
     """Return the figures as lines."""
     memory = np.array(found.memory) / 1e6
@@ -155,6 +174,11 @@ def _run(pool: ProcessPoolExecutor, members: Sequence[Member], folder: Path) -> 
     for path in recordings_in(folder):  # or they would be kept
         path.unlink()
     return run_all(pool, ski_timed, [(member, folder) for member in members], lambda _done, _text: None, "skiing")
+
+
+def _row(name: str, unit: str, values: Sequence[float], **more: Any) -> Measurement:
+    numbers = percentiles(values)
+    return Measurement(SUBJECT, name, unit, numbers["median"], numbers["p99"], len(values), checked=False, **more)
 
 
 def _line(name: str, values: Sequence[float]) -> str:

@@ -21,6 +21,7 @@ SUBJECTS = {
     "resample": "benchmarks.resample",
     "bake": "benchmarks.blender",
     "files": "benchmarks.files",
+    "crowd": "benchmarks.crowd",
 }
 """Name on the command line, and module."""
 

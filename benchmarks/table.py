@@ -19,6 +19,7 @@ TITLES = {
     "resample": "resample of a recording of 10 s",
     "bake": "bake of 10 s at 60 fps",
     "files": "files of a recording of 10 s",
+    "crowd": "crowd: skiers in one process and in two",
     "instructions": "instructions, in thousands",
 }
 """Headings of the subjects."""

@@ -65,9 +65,9 @@ This page is made from the tables of keys in `ski_addon/spec/` by
 
 def key_reference() -> str:
     """Return the reference page of all keys as Markdown."""
-    sections = [_table(f"[{name}]", section_fields(name), cls.__doc__ or "") for name, cls in SECTIONS.items()]
-    rows = [_table(f"[[{key}]]", info.row_fields, info.row.__doc__ or "") for key, info in row_kinds().items()]
-    return "\n".join((HEAD, _table("Document", section_fields("")), *sections, *rows))
+    sections = [key_table(f"[{name}]", section_fields(name), cls.__doc__ or "") for name, cls in SECTIONS.items()]
+    rows = [key_table(f"[[{key}]]", info.row_fields, info.row.__doc__ or "") for key, info in row_kinds().items()]
+    return "\n".join((HEAD, key_table("Document", section_fields("")), *sections, *rows))
 
 
 def write_reference(path: Path | None = None) -> Path:
@@ -77,7 +77,8 @@ def write_reference(path: Path | None = None) -> Path:
     return path
 
 
-def _table(title: str, infos: tuple[FieldInfo, ...], text: str = "") -> str:
+def key_table(title: str, infos: tuple[FieldInfo, ...], text: str = "") -> str:
+    """Return one section of a reference page: its title, `text`, and a row of Markdown for each of `infos`."""
     rows = (f"| `{info.name}` | {_default(info)} | {_allowed(info)} | {_meaning(info)} |" for info in infos)
     head = (f"## {title}", text, "", "| key | default | allowed | meaning |", "|---|---|---|---|")
     return "\n".join((*head, *rows)).replace("\n\n\n", "\n\n") + "\n"

@@ -142,6 +142,36 @@ def test_baking_again_replaces_the_crowd_and_nothing_else(core, simulated) -> No
     assert [obj.name for obj in bpy.context.scene.objects].count("Slope") == 1
 
 
+def test_a_damaged_recording_is_named_and_the_baked_crowd_stays(core, simulated) -> None:
+    import bpy
+
+    assert bpy.ops.ski.bake_crowd() == {"FINISHED"}
+    before = [home.name for home in simulated.crowd_collection.children]
+    path = core("blender.crowds").found_folder(simulated) / "member_002.npz"
+    path.write_bytes(path.read_bytes()[:-5000])
+    with pytest.raises(RuntimeError, match=r"member_002\.npz.*damaged.*simulate the crowd again"):
+        bpy.ops.ski.bake_crowd()
+    assert [home.name for home in simulated.crowd_collection.children] == before
+    assert bpy.ops.ski.crowd() == {"FINISHED"} and "(1 kept)" in simulated.crowd_text
+    assert bpy.ops.ski.bake_crowd() == {"FINISHED"}
+
+
+def test_gates_stand_on_every_course_once(core, scene) -> None:
+    import bpy
+
+    spec = core("spec").RunSpec.from_toml(core("spec").find_document("slalom"))
+    spec = spec.with_overrides({"course.gate_count": 3})
+    terrain = core("terrain").build_terrain(spec.slope)
+    collection = bpy.data.collections.new("Gates")
+    built = core("blender.gates").build_gates(spec, terrain, collection)
+    left = [gate[0].location.y for gate in built]
+    stage = core("blender.stage").Stage(terrain, built, [])
+    core("blender.crowd_files")._stand_gates([(spec, 5.0), (spec, -4.0), (spec, 5.0)], stage, bpy.context.scene)
+    assert sorted(obj.location.y for obj in collection.objects) == pytest.approx(
+        sorted([y + 5.0 for y in left] + [y - 4.0 for y in left])
+    )
+
+
 def test_without_a_simulated_crowd_there_is_nothing_to_bake(ski) -> None:
     import bpy
 
