@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 import shutil
 from pathlib import Path
+from typing import Any
 
 from ..errors import MissingInputError, OutputError, SpecError
 from ..spec.estimate import show_bytes
 from .crowd_spec import CrowdSpec
 from .documents import DOCUMENT, read_crowd
 from .expected import disk_bytes
+from .sections import StartSpec
 from .skiing import recordings_in
 
 SHARED = ("count", "start_interval", "start_variation", "apart", "delay_max", "linger")
@@ -51,5 +53,5 @@ def _crowd_in(folder: Path) -> CrowdSpec | None:
 
 def _members(crowd: CrowdSpec) -> CrowdSpec:
     """Return `crowd` without what changes no member."""
-    usual = {info.name: info.default for info in dataclasses.fields(type(crowd.crowd)) if info.name in SHARED}
+    usual: dict[str, Any] = {name: getattr(StartSpec, name) for name in SHARED}
     return dataclasses.replace(crowd, name="", description="", crowd=dataclasses.replace(crowd.crowd, **usual))
