@@ -281,7 +281,7 @@ class SKI_PT_crowd(_Step, bpy.types.Panel):
         row.operator("ski.bake_crowd", icon="KEYFRAME_HLT")
 
 
-class SKI_PT_crowd_more(_InTab, bpy.types.Panel):
+class SKI_PT_crowd_more(_Step, bpy.types.Panel):
     """How they differ."""
 
     bl_label = "More"

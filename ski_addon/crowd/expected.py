@@ -9,6 +9,8 @@ from .crowd_spec import CrowdSpec
 
 BASE_BYTES = 150e6
 """Memory of a process before it records anything [bytes]: Python and its libraries."""
+PEAK_BYTES_PER_STEP = 5000
+"""Memory of one step while a recording is put together and written [bytes]."""
 FILE_BYTES_PER_STEP = 1884
 """Size of one step in a recording's file [bytes]."""
 
@@ -22,7 +24,7 @@ def describe(crowd: CrowdSpec, jobs: int) -> str:
     """Return one clause for a message: how many ski how long, and what that takes of disk, memory and time."""
     members = _expected(crowd)
     seconds = sum(one.simulated_seconds for one in members)
-    memory = BASE_BYTES + max(one.memory_bytes for one in members)
+    memory = BASE_BYTES + PEAK_BYTES_PER_STEP * max(one.steps for one in members)
     shared = min(jobs or 1, len(members))
     wall = max(sum(one.wall_seconds for one in members) / shared, max(one.wall_seconds for one in members))
     processes = f"{shared} process{'es' if shared > 1 else ''}"

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 OLD = "From before the last change:"
-WORK = ["skier", "slope", "course", "technique", "snow", "simulate", "bake", "analyse"]
+WORK = ["skier", "slope", "course", "technique", "snow", "simulate", "bake", "crowd", "analyse"]
 
 
 class Button:
@@ -137,11 +137,18 @@ def test_every_field_of_a_run_can_be_reached(core, ski, draw) -> None:
     assert "curve" in drawn  # the points of a path come from it
 
 
+def test_every_field_of_a_crowd_can_be_reached(core, ski, draw) -> None:
+    names = [info.name for info in core("crowd").field_table().values()]
+    drawn = draw("crowd", "crowd_more").of("prop")
+    assert sorted(names + ["crowd_jobs"]) == sorted(name for name in drawn if not name.endswith("_word"))
+    assert draw("crowd").of("operator") == ["ski.crowd", "ski.bake_crowd"]
+
+
 def test_fields_for_experts_are_folded_away(core, ski, draw) -> None:
-    assert "strength" not in draw().of("prop")
+    assert not {"hardness", "equations"} & set(draw().of("prop"))
     core("blender.preferences").preferences().expert = True
     try:
-        assert "strength" in draw().of("prop")
+        assert {"hardness", "equations"} <= set(draw().of("prop"))
     finally:
         core("blender.preferences").preferences().expert = False
 
