@@ -60,8 +60,9 @@ class CrowdFigures:
 
     @property
     def growth(self) -> float:
-        """Memory that a worker gains with each second it has skied, after its first member [bytes/s]."""
-        return float(np.polyfit(self.skied, self.memory, 1)[0]) if len(self.memory) > 1 else 0.0
+        """Memory that a worker gains with each second it skies, once it has skied each of the members [bytes/s]."""
+        skied, memory = self.skied[MEMBERS - 1 :], self.memory[MEMBERS - 1 :]
+        return float(np.polyfit(skied, memory, 1)[0]) if len(memory) > 1 else 0.0
 
     @property
     def per_second(self) -> float:
@@ -142,7 +143,7 @@ def table(found: CrowdFigures) -> str:
         "",
         f"{'peak memory of a worker':34} {'skied':>8} {'MB':>8}",
         *(f"{'':34} {time:7.0f}s {size:8.1f}" for time, size in zip(found.skied, memory, strict=True)),
-        f"grows by {found.growth / 1e3:.1f} kB a second it has skied, over members of equal length",
+        f"grows by {found.growth / 1e3:.1f} kB a second it skies, after the first {MEMBERS} members",
         f"takes {found.per_second / 1e6:.2f} MB a second of one member's run "
         f"({found.long_memory / 1e6:.1f} MB for {found.long_skied:.0f} s at a stretch)",
     ))  # fmt: skip

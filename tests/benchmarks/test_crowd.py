@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from benchmarks import crowd as benchmark
@@ -19,10 +21,18 @@ def test_every_round_has_both(found):
 
 
 def test_memory_grows_with_a_run_and_not_with_the_number_of_runs(found):
-    assert found.memory == sorted(found.memory) and len(found.memory) == benchmark.MEMBERS
+    assert len(found.memory) == len(found.skied) == benchmark.MEMBERS
     assert found.long_memory > found.memory[0] and found.long_skied > 2.0 * found.skied[0]
     assert 0.0 < found.per_second < 20e6
     assert found.memory[-1] - found.memory[1] < 0.5 * found.per_second * (found.skied[-1] - found.skied[1])
+
+
+def test_growth_is_that_after_the_first_members(found):
+    made = replace(found, skied=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], memory=[10, 20, 30, 40, 45, 50])
+    assert made.growth == pytest.approx(5.0)
+    assert replace(found, long_skied=found.skied[0] + 2.0, long_memory=found.memory[0] + 8).per_second == pytest.approx(
+        4
+    )
 
 
 def test_the_lines_tell_all_of_it(found, monkeypatch):
