@@ -29,9 +29,10 @@ def components(vector: Array) -> Array:
     """Return the components of `vector` (..., k) as contiguous arrays (k, ...).
 
     numpy computes sines and arc tangents of strided views by one of two routines that differ in the last bit, chosen
-    by where in memory the arrays happen to lie. Contiguous arguments keep results the same from run to run.
+    by where in memory the arrays happen to lie. Contiguous arguments keep results the same from run to run. They are
+    copies: a view of a single vector counts as contiguous whatever its stride, and still makes numpy choose.
     """
-    return np.ascontiguousarray(np.moveaxis(np.asarray(vector, dtype=float), -1, 0))
+    return np.array(np.moveaxis(np.asarray(vector, dtype=float), -1, 0), order="C")
 
 
 def matrix_from_columns(x: Array, y: Array, z: Array) -> Array:

@@ -212,6 +212,13 @@ def test_sines_are_the_same_to_the_last_bit_whatever_the_layout(rng, axis):
         assert frames.rotation_about(axis, laid).tobytes() == expected
 
 
+@pytest.mark.parametrize("count", [1, 2, 7])
+def test_components_lie_side_by_side_also_of_one_vector(count):
+    """Or numpy's arc tangent takes one of two routines by what lies behind them in memory."""
+    found = frames.components(np.arange(9.0 * count).reshape(count, 9))
+    assert found.strides == (8 * count, 8) and found[2, -1] == 9.0 * (count - 1) + 2.0
+
+
 def test_arc_tangents_of_components_are_the_same_to_the_last_bit_whatever_the_layout(rng):
     """The results lie right behind the arguments: where numpy takes its other route if the arguments are strided."""
     count, width = 3001, 11
