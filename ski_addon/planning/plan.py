@@ -17,7 +17,7 @@ from .comparison import RIGID_LEAN
 from .line import Line, TrackSpline, turned_frames
 from .pendulum import Legs, Pendulum, balanced_pendulum, mirrored, rigid_pendulum, upright
 from .pose import plan_poses
-from .ride import Body, SpeedControl, plan_ride
+from .ride import Body, Rider, SpeedControl
 from .stance import Stance, build_stance
 
 if TYPE_CHECKING:
@@ -131,13 +131,13 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
 def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[Line, Pendulum]:
     """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
     snow, spline = Snow.of(spec.snow, spec.skier, spec.technique.tuck), TrackSpline(track)
-    control = speed_control(spec, track)
+    rider = Rider(track, snow, speed_control(spec, track))
     body = Body(
         normal=-(track.surface_normal @ GRAVITY), swing=np.zeros(len(track.arc_length)), arc_length=track.arc_length
     )
     before = None
     for _ in range(25):
-        ride = plan_ride(track, snow, body, control)
+        ride = rider.ride(body)
         check_arrival(track, ride)
         line = spline.line(ride, snow)
         if not spec.technique.inclination:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..planning.ride import AIM, CONTROL_TIME, LEAST_SIDE_FORCE
+from ..planning.ride_steps import AIM, CONTROL_TIME, LEAST_SIDE_FORCE
 from .numbers import ARRAYS, Numbers
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from ski_addon.course import Track
-from ski_addon.planning.ride import AIM, Body, Ride, SpeedControl, plan_ride
+from ski_addon.planning.ride import Body, Ride, SpeedControl, plan_ride
+from ski_addon.planning.ride_steps import AIM
 from ski_addon.snow import Snow
 from ski_addon.spec import SkierSpec, SnowSpec
 
