@@ -16,6 +16,10 @@ from .skeleton import Skeleton
 
 MINIMUM_KNEE = np.deg2rad(8.0)
 """A leg straighter than this is singular: it is held here, and the missing length is reported."""
+DEEPEST_KNEE = np.deg2rad(150.0)
+"""No knee bends further."""
+SIDE_LIMIT = np.deg2rad(5.0)
+"""How far a boot lets the ankle's side axis turn."""
 
 
 @dataclass(frozen=True)
@@ -40,13 +44,19 @@ def ankle_from_ski(skeleton: Skeleton, ski_position: np.ndarray, ski_rotation: n
     return ski_position + ski_rotation @ local
 
 
+def reach_of(skeleton: Skeleton) -> tuple[float, float]:
+    """Return the least and the largest distance [m] from hip to ankle."""
+    thigh, shank = skeleton.lengths["thigh"], skeleton.lengths["shank"]
+    return _distance_at(thigh, shank, DEEPEST_KNEE), _distance_at(thigh, shank, MINIMUM_KNEE)
+
+
 def solve_leg(
     skeleton: Skeleton,
     hip: np.ndarray,
     pelvis_rotation: np.ndarray,
     ankle: np.ndarray,
     foot_rotation: np.ndarray,
-    side_limit: float = np.deg2rad(5.0),
+    side_limit: float = SIDE_LIMIT,
 ) -> LegAngles:
     """Solve legs from `hip` (n, 3) to `ankle` (n, 3) [m, world] for pelvis and foot rotations (n, 3, 3).
 
@@ -55,9 +65,7 @@ def solve_leg(
     thigh_length, shank_length = skeleton.lengths["thigh"], skeleton.lengths["shank"]
     line = hip - ankle
     distance = np.linalg.norm(line, axis=-1)
-    reach = _distance_at(thigh_length, shank_length, MINIMUM_KNEE)
-    nearest = _distance_at(thigh_length, shank_length, np.deg2rad(150.0))
-    held = np.clip(distance, nearest, reach)
+    held = np.clip(distance, *reach_of(skeleton))
     up = line / distance[:, None]
     knee_axis = normalized(np.cross(up, foot_rotation[..., 0]))
     _, axis_y, axis_z = components(np.einsum("nji,nj->ni", foot_rotation, knee_axis))

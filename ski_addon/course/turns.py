@@ -6,12 +6,13 @@ the left, and speed, heading and position follow by integration with friction an
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import PlanInfeasible
-from ..frames import components, normalized
+from ..frames import normalized
 from ..gravity import STANDARD_GRAVITY
 from ..snow import Snow
 from ..spec import CourseSpec, RunSpec
@@ -145,24 +146,53 @@ def _integrate(schedule: TurnSchedule, glide: _Glide, speed: float, heading: flo
     step = end / count
     time = np.linspace(0.0, end, count + 1)
     bend = schedule.curvature_at(np.linspace(0.0, end, 2 * count + 1))
+    speeds, headings, stuck = _stages(bend.tolist(), glide, speed, heading, step)
+    weights = np.array([step / 6.0, step / 3.0, step / 3.0, step / 6.0])
+    moves = (speeds, speeds * np.cos(headings), speeds * np.sin(headings))
+    arc, down, left = (np.concatenate(([0.0], np.cumsum(move[:-1] @ weights))) for move in moves)
+    if stuck:
+        at = time[len(arc) - 1]
+        raise _stopped(at, float(arc[-2]), int(schedule.labels_at(at)[1]))
+    return _Motion(time, arc, speeds[:, 0].copy(), headings[:, 0].copy(), down, left)
 
-    def rate(state: np.ndarray, curvature: float) -> np.ndarray:
-        v, psi = state[1], state[2]
-        c, s = np.cos(psi), np.sin(psi)
-        return np.array((v, glide.acceleration(v, c), curvature * v, v * c, v * s))
 
-    states = np.empty((count + 1, 5))
-    states[0] = (0.0, speed, heading, 0.0, 0.0)
-    for i in range(count):
-        x = states[i]
-        k1 = rate(x, bend[2 * i])
-        k2 = rate(x + 0.5 * step * k1, bend[2 * i + 1])
-        k3 = rate(x + 0.5 * step * k2, bend[2 * i + 1])
-        k4 = rate(x + step * k3, bend[2 * i + 2])
-        states[i + 1] = x + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        if states[i + 1, 1] < min(SLOWEST, states[i, 1]):
-            raise _stopped(time[i + 1], float(x[0]), int(schedule.labels_at(time[i + 1])[1]))
-    return _Motion(time, *components(states))
+def _stages(
+    bend: list[float], glide: _Glide, speed: float, heading: float, step: float
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Return speed [m/s] and heading [rad] (n, 4) at the four stages of each step, and whether the skier got stuck.
+
+    `bend` [1/m] is the curvature at every half `step` [s]. Plain floats, for this is a loop of thousands of steps.
+    """
+    snow, half, sixth, cos, most = glide.snow, 0.5 * step, step / 6.0, math.cos, glide.most
+    gravity, normal = STANDARD_GRAVITY * glide.steepness, STANDARD_GRAVITY * glide.normal
+    friction, per_speed, drag = snow.friction, snow.friction_per_speed, snow.drag_factor
+    stages: list[float] = []
+    stuck = False
+
+    def gain(v: float, psi: float) -> float:
+        rate = gravity * cos(psi) - (friction + per_speed * v) * normal - drag * v * v
+        return min(rate, (most - v) / BRAKING_TIME) if v > most - rate * BRAKING_TIME else rate
+
+    v, psi = speed, heading
+    for i in range(0, len(bend) - 2, 2):
+        begin, middle, end = bend[i : i + 3]
+        a = gain(v, psi)
+        v2, psi2 = v + half * a, psi + half * (begin * v)
+        b = gain(v2, psi2)
+        v3, psi3 = v + half * b, psi + half * (middle * v2)
+        c = gain(v3, psi3)
+        v4, psi4 = v + step * c, psi + step * (middle * v3)
+        d = gain(v4, psi4)
+        stages += (v, v2, v3, v4, psi, psi2, psi3, psi4)
+        after = v + sixth * (a + 2.0 * b + 2.0 * c + d)
+        psi += sixth * (begin * v + 2.0 * (middle * v2) + 2.0 * (middle * v3) + end * v4)
+        stuck = after < min(SLOWEST, v)
+        v = after
+        if stuck:
+            break
+    stages += (v, v, v, v, psi, psi, psi, psi)
+    table = np.array(stages).reshape(-1, 2, 4)
+    return table[:, 0].copy(), table[:, 1].copy(), stuck
 
 
 def _schuss_time(glide: _Glide, speed: float) -> float:

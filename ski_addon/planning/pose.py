@@ -11,16 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..body import Skeleton, centre_of_mass, forward_kinematics
-from ..body.leg_ik import LegAngles, ankle_from_ski, solve_leg
+from ..body import Skeleton
+from ..body.leg_ik import ankle_from_ski, solve_leg
 from ..body.skeleton import SIDES
-from ..frames import quaternion_from_matrix, rotation_about
+from ..frames import matrix_from_quaternion, quaternion_from_matrix, rotation_about
 from ..snow import edge_lift
 from .pendulum import Pendulum
 from .stance import Stance
+from .standing import place_pelvis
 
-BOOT_PLAY = np.deg2rad(4.0)
-"""How much of the boot's 5 degrees of side play the plan uses; approached smoothly."""
 SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
 """Lean taken back by spine and head, in units of the pelvis's angulation angle."""
 PELVIS_TURN = 0.4
@@ -74,19 +73,9 @@ def plan_poses(
     qpos = np.repeat(stance.qpos[None], count, axis=0)
     crouch = stance.height - np.hypot(pendulum.y, pendulum.h)
     _lean_upper_body(skeleton, qpos, world_from_body, inclination, angulation, steering, crouch, stance.pitch)
-    qpos[:, :3] += com - _com(skeleton, qpos)
-    edge = np.repeat(inclination[:, None], 2, axis=1)
-    for _ in range(25):
-        ski_position, ski_rotation = ski_frames(skeleton, world_from_skis, position, edge)
-        legs = _solve_legs(skeleton, qpos, ski_position, ski_rotation)
-        moved = com - _com(skeleton, qpos)
-        qpos[:, :3] += moved
-        misfit = edge - inclination[:, None] + np.stack([leg.foot_x + leg.edge_error for leg in legs], axis=1)
-        turned = inclination[:, None] + misfit - BOOT_PLAY * np.tanh(misfit / BOOT_PLAY) - edge
-        edge = edge + turned
-        if np.max(np.abs(moved)) < 1e-9 and np.max(np.abs(turned)) < 1e-9:
-            break
-    reach_error = np.stack([leg.length_error for leg in legs], axis=1)
+    qpos[:, :3], edge = place_pelvis(skeleton, qpos, world_from_skis, position, com, inclination)
+    ski_position, ski_rotation = ski_frames(skeleton, world_from_skis, position, edge)
+    reach_error = _solve_legs(skeleton, qpos, ski_position, ski_rotation)
     return PlannedPoses(qpos, edge, ski_position, ski_rotation, reach_error)
 
 
@@ -129,24 +118,16 @@ def _lean_upper_body(
         qpos[:, skeleton.qpos_of(f"hand_y.{side}")] += WRIST_TURN * (inside + inside**2)
 
 
-def _solve_legs(
-    skeleton: Skeleton, qpos: np.ndarray, ski_position: np.ndarray, ski_rotation: np.ndarray
-) -> list[LegAngles]:
-    """Solve both legs in place in `qpos` and return their angles."""
-    from ..frames import matrix_from_quaternion
-
-    pelvis = matrix_from_quaternion(qpos[:, 3:7])
-    legs = []
-    for i, side in enumerate(SIDES):
-        hip = qpos[:, :3] + pelvis @ skeleton.offset[skeleton.body(f"thigh.{side}")]
-        ankle = ankle_from_ski(skeleton, ski_position[:, i], ski_rotation[:, i])
-        leg = solve_leg(skeleton, hip, pelvis, ankle, ski_rotation[:, i])
-        values = (*leg.thigh.T, leg.shank, leg.foot_y, leg.foot_x)
-        for hinge, value in zip(("thigh_y", "thigh_x", "thigh_z", "shank_y", "foot_y", "foot_x"), values, strict=True):
-            qpos[:, skeleton.qpos_of(f"{hinge}.{side}")] = value
-        legs.append(leg)
-    return legs
-
-
-def _com(skeleton: Skeleton, qpos: np.ndarray) -> np.ndarray:
-    return centre_of_mass(skeleton, *forward_kinematics(skeleton, qpos))
+def _solve_legs(skeleton: Skeleton, qpos: np.ndarray, ski_position: np.ndarray, ski_rotation: np.ndarray) -> np.ndarray:
+    """Solve both legs in place in `qpos` and return how far they are out of reach (n, 2) [m]."""
+    count = len(qpos)
+    rotation = matrix_from_quaternion(qpos[:, 3:7])
+    hips = [qpos[:, :3] + rotation @ skeleton.offset[skeleton.body(f"thigh.{side}")] for side in SIDES]
+    feet = np.concatenate((ski_rotation[:, 0], ski_rotation[:, 1]))
+    ankles = ankle_from_ski(skeleton, np.concatenate((ski_position[:, 0], ski_position[:, 1])), feet)
+    legs = solve_leg(skeleton, np.concatenate(hips), np.concatenate((rotation, rotation)), ankles, feet)
+    values = (*legs.thigh.T, legs.shank, legs.foot_y, legs.foot_x)
+    for hinge, value in zip(("thigh_y", "thigh_x", "thigh_z", "shank_y", "foot_y", "foot_x"), values, strict=True):
+        for side, part in zip(SIDES, (value[:count], value[count:]), strict=True):
+            qpos[:, skeleton.qpos_of(f"{hinge}.{side}")] = part
+    return legs.length_error.reshape(2, count).T.copy()
