@@ -16,10 +16,12 @@ solution, which anticipates transitions.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ..frames import components
+from .differences import Differences
 from .line import Line
 
 STEEPEST = np.deg2rad(75.0)
@@ -69,10 +71,10 @@ class Legs:
 class _Pivot:
     """The padded terms of the pendulum that do not depend on it, (n,) each: angular velocity of the skis' frame
     `along`, `across`, `up` [rad/s], the force that drives it sideways `side`, and the normal force `rest` of a
-    centre of mass that moves with the skis [m/s^2].
+    centre of mass that moves with the skis [m/s^2]; `time` differentiates.
     """
 
-    time: np.ndarray
+    time: Differences
     along: np.ndarray
     across: np.ndarray
     up: np.ndarray
@@ -80,6 +82,11 @@ class _Pivot:
     rest: np.ndarray
     into: np.ndarray
     rise: np.ndarray
+
+    @cached_property
+    def along_rate(self) -> np.ndarray:
+        """The rate of `along` (n,) [rad/s^2]."""
+        return self.time.first(self.along)
 
 
 def upright(line: Line, height: float) -> Pendulum:
@@ -91,15 +98,14 @@ def upright(line: Line, height: float) -> Pendulum:
 def balanced_pendulum(line: Line, legs: Legs) -> Pendulum:
     """Return the pendulum that is balanced along `line` on `legs`."""
     pivot = _pivot(line, legs)
-    y, h = np.zeros_like(pivot.time), legs.length + pivot.rise
+    y, h = np.zeros_like(pivot.rise), legs.length + pivot.rise
+    least, turns_over, limit = 0.05 * pivot.into, pivot.across * pivot.up, legs.length * np.sin(STEEPEST)
+    spin, roll, roll_rate = pivot.along**2 + pivot.up**2, 2.0 * pivot.along, pivot.along_rate
     smoothing = 0.0
     for _ in range(MOST_ITERATIONS):
-        normal = _normal(pivot, y, h)
-        held = np.maximum(normal, 0.05 * pivot.into)
-        stiffness = held / h + pivot.along**2 + pivot.up**2
-        turning = derivative(pivot.time, pivot.along) * h + 2.0 * pivot.along * derivative(pivot.time, h)
-        solved = _bounded_solution(pivot.time, stiffness, pivot.side + turning - pivot.across * pivot.up * h)
-        limit = legs.length * np.sin(STEEPEST)
+        stiffness = np.maximum(_normal(pivot, y, h), least) / h + spin
+        turning = roll_rate * h + roll * pivot.time.first(h)
+        solved = pivot.time.bounded_solution(stiffness, pivot.side + turning - turns_over * h)
         change = np.clip(solved, -limit, limit) - y
         y = y + change * 0.8 / (1.0 + (y / h) ** 2)  # the height falls as the lean grows: a full step would overshoot
         h = _height(pivot, y, legs, smoothing)
@@ -130,14 +136,14 @@ def _pivot(line: Line, legs: Legs) -> _Pivot:
     _, side, down = components(line.pull)
     padded = _padded(line.time, along, across, up, side, -down, line.gravity_into, legs.rise)
     padded[-1] = _eased(padded[-1], float(padded[0][1] - padded[0][0]))
-    return _Pivot(*padded)
+    return _Pivot(Differences(padded[0]), *padded[1:])
 
 
 def _normal(pivot: _Pivot, y: np.ndarray, h: np.ndarray) -> np.ndarray:
     """Return the normal force per mass (n,) [m/s^2] of a body at `y`, `h` (n,) [m]."""
     time = pivot.time
-    turning = derivative(time, pivot.along) * y + 2.0 * pivot.along * derivative(time, y) + pivot.up * pivot.across * y
-    return second_derivative(time, h) + turning - (pivot.along**2 + pivot.across**2) * h + pivot.rest
+    turning = pivot.along_rate * y + 2.0 * pivot.along * time.first(y) + pivot.up * pivot.across * y
+    return time.second(h) + turning - (pivot.along**2 + pivot.across**2) * h + pivot.rest
 
 
 def _height(pivot: _Pivot, y: np.ndarray, legs: Legs, smoothing: float) -> np.ndarray:
@@ -146,7 +152,7 @@ def _height(pivot: _Pivot, y: np.ndarray, legs: Legs, smoothing: float) -> np.nd
 
     rigid = np.sqrt(legs.length**2 - y**2)
     if smoothing:
-        step = float(pivot.time[1] - pivot.time[0])
+        step = pivot.time.step
         room = np.sqrt((legs.length + legs.extension) ** 2 - y**2)
         rigid = np.minimum(gaussian_filter1d(rigid, smoothing / step, mode="nearest"), room)
         rigid = gaussian_filter1d(rigid, 0.03 / step, mode="nearest")
@@ -156,14 +162,13 @@ def _height(pivot: _Pivot, y: np.ndarray, legs: Legs, smoothing: float) -> np.nd
 def _cut(pivot: _Pivot, line: Line, y: np.ndarray, h: np.ndarray) -> Pendulum:
     """Return the pendulum without the padding."""
     time, up, along, across = pivot.time, pivot.up, pivot.along, pivot.across
-    y_rate, h_rate = derivative(time, y), derivative(time, h)
-    swing = derivative(time, across) * h - derivative(time, up) * y + 2.0 * (across * h_rate - up * y_rate)
+    y_rate, h_rate = time.first(y), time.first(h)
+    swing = time.first(across) * h - time.first(up) * y + 2.0 * (across * h_rate - up * y_rate)
     swing += along * (across * y + up * h)
-    lift = _normal(pivot, y, h) - pivot.rest  # what the body's motion over the skis adds along its up axis
+    normal = _normal(pivot, y, h)
+    lift = normal - pivot.rest  # what the body's motion over the skis adds along its up axis
     inner = slice(_PAD, -_PAD)
-    y, y_rate, h, h_rate, normal, swing, lift = (
-        array[inner] for array in (y, y_rate, h, h_rate, _normal(pivot, y, h), swing, lift)
-    )
+    y, y_rate, h, h_rate, normal, swing, lift = (array[inner] for array in (y, y_rate, h, h_rate, normal, swing, lift))
     skis = np.cross(line.body_frame[..., 1], line.surface_normal)  # along the skis on the bumpy snow
     ahead, _, lifted = (np.sum(line.body_frame[..., axis] * skis, axis=1) for axis in range(3))
     return Pendulum(y, y_rate, h, h_rate, normal * _bearing(line, y / h, lifted / ahead), swing * ahead + lift * lifted)
@@ -195,33 +200,6 @@ def _padded(time: np.ndarray, *arrays: np.ndarray) -> list[np.ndarray]:
     before = time[0] - step * np.arange(_PAD, 0, -1)
     after = time[-1] + step * np.arange(1, _PAD + 1)
     return [np.concatenate((before, time, after)), *(np.pad(array, _PAD, mode="edge") for array in arrays)]
-
-
-def _bounded_solution(time: np.ndarray, stiffness: np.ndarray, forcing: np.ndarray) -> np.ndarray:
-    """Solve y'' - stiffness y = forcing on uneven `time` with the steady value at both ends (three diagonals)."""
-    from scipy.linalg import solve_banded
-
-    before, after = np.diff(time)[:-1], np.diff(time)[1:]
-    lower, upper = 2.0 / (before * (before + after)), 2.0 / (after * (before + after))
-    bands = np.zeros((3, len(time)))
-    bands[0, 2:] = upper
-    bands[1, 1:-1] = -(lower + upper) - stiffness[1:-1]
-    bands[2, :-2] = lower
-    bands[1, [0, -1]] = -stiffness[[0, -1]]
-    return solve_banded((1, 1), bands, forcing)
-
-
-def derivative(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return d values / d time (n,), second order on uneven `time`."""
-    return np.gradient(values, time, edge_order=2)
-
-
-def second_derivative(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the second derivative (n,) on uneven `time`; the ends repeat their neighbours."""
-    before, after = np.diff(time)[:-1], np.diff(time)[1:]
-    slope = np.diff(values) / np.diff(time)
-    inner = 2.0 * np.diff(slope) / (before + after)
-    return np.concatenate((inner[:1], inner, inner[-1:]))
 
 
 def speed_for_lean(
