@@ -12,7 +12,7 @@ import numpy as np
 from ..body import Skeleton
 from ..body.skeleton import SIDES
 from ..course import Track
-from ..course.quadratic import solve_quadratic
+from ..course.quadratic import solve_between
 from ..gravity import GRAVITY
 from ..spec import RunSpec
 from .line import PLACES_PER_METRE, Line
@@ -103,23 +103,17 @@ def _least_lift(ground: np.ndarray, step: float, low: float, high: float) -> np.
     `ground` (n,) [m/s^2] best: the least sum of squares of the body's acceleration, of jerks, and of slow standing
     high or low, which `SLOWEST_ABSORBED` gives up.
     """
-    from scipy import sparse
-
-    n = len(ground)
-    second = sparse.diags([1.0, -2.0, 1.0], [0, 1, 2], shape=(n - 2, n))
-    third = sparse.diags([-1.0, 3.0, -3.0, 1.0], [0, 1, 2, 3], shape=(n - 3, n))
-    cost = second.T @ second + (JERK_TIME / step) ** 2 * (third.T @ third)
-    cost = cost + (SLOWEST_ABSORBED * step) ** 4 * sparse.identity(n)
-    pull = -(second.T @ (step**2 * ground[1:-1]))
-    one = sparse.csr_matrix(([1.0], ([0], [n])), shape=(1, n + 1))
-    limits = sparse.bmat(
-        [
-            [sparse.identity(n), sparse.csr_matrix(np.full((n, 1), -high))],
-            [-sparse.identity(n), sparse.csr_matrix(np.full((n, 1), low))],
-        ]
-    )
-    cost = sparse.block_diag((cost, sparse.csr_matrix((1, 1))))
-    return solve_quadratic(cost, np.append(pull, 0.0), one, np.ones(1), limits.tocsr(), 1e-9)[:n]
+    count = len(ground)
+    cost, pull = np.zeros((4, count)), np.zeros(count)
+    cost[-1] = (SLOWEST_ABSORBED * step) ** 4
+    for pattern, weight in (((1.0, -2.0, 1.0), 1.0), ((-1.0, 3.0, -3.0, 1.0), (JERK_TIME / step) ** 2)):
+        places = count - len(pattern) + 1
+        for i, first in enumerate(pattern):
+            for j, second in enumerate(pattern[i:]):
+                cost[-1 - j, i + j : i + j + places] += weight * first * second
+    for i, part in enumerate((1.0, -2.0, 1.0)):
+        pull[i : i + count - 2] -= part * step**2 * ground[1:-1]
+    return solve_between(cost, pull, low, high, 1e-9)
 
 
 def _smoothly(at: np.ndarray, places: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -138,17 +138,16 @@ class Rider:
     def ride(self, body: Body, time_step: float = TIME_STEP) -> Ride:
         """Return the ride of `body` to the end of the track, or until the skier stands long enough or sticks."""
         normal, swing = (np.interp(self._places, body.arc_length, column) for column in (body.normal, body.swing))
-        along, left, bend = self._columns
         ground = Ground(self._step, self.track.stop_from, self.length, self.snow)
-        steps = Steps(self.track.start_speed, time_step)
+        steps, control = Steps(self.track.start_speed, time_step), self.control
+        table: Rows | None = None
         if self._foreseen is None:
-            goes_on = glide(steps, ground, rows(along, normal, swing))
+            goes_on = glide(steps, ground, rows(self._columns[0], normal, swing))
         else:
-            table = rows(along, left, bend, normal, swing, self._taken)
-            goes_on = hold(steps, ground, table, self._foreseen, self._most, self.control.skid)
+            table = rows(*self._columns, normal, swing, self._taken)
+            goes_on = hold(steps, ground, table, self._foreseen, self._most, control.skid)
         if goes_on:
-            control = self.control
-            table = rows(along, left, bend, normal, swing)
+            table = table or rows(*self._columns, normal, swing, np.zeros_like(swing))
             stop(steps, ground, table, control.stop_side, control.deceleration, control.stand)
         return _ride(steps, self.length)
 

@@ -38,7 +38,7 @@ SOFT_SPEED = 1.0
 STANDING = 0.02
 """Speed [m/s] at which a skier stands."""
 
-Rows = list[list[float]]
+Rows = list[tuple[float, ...]]
 """Rows of a table: of each of its columns the value, then of each how much it changes up to the next row."""
 
 
@@ -87,8 +87,9 @@ class Steps:
 
 def rows(*columns: np.ndarray) -> Rows:
     """Return the rows of a table with these columns (n,), all but the last, which only ends the one before."""
-    table = np.stack(columns, axis=1)
-    return np.hstack((table[:-1], np.diff(table, axis=0))).tolist()
+    values = [column[:-1].tolist() for column in columns]
+    changes = [np.diff(column).tolist() for column in columns]
+    return list(zip(*values, *changes, strict=True))
 
 
 def glide(steps: Steps, ground: Ground, table: Rows) -> bool:
@@ -212,7 +213,7 @@ def hold(  # noqa: PLR0915 (one loop: calls would take most of its time)
 
 def stop(steps: Steps, ground: Ground, table: Rows, side: int, deceleration: float, stand: float) -> None:
     """Turn the skis across the track to the left (`side` +1) or right (-1), brake by `deceleration` [m/s^2], and stand
-    for `stand` [s]. `table` is as for `hold`, without the energy.
+    for `stand` [s]. `table` is as for `hold`.
     """
     dt, most, stood = steps.size, FASTEST_STOP * steps.size, 0.0
     arc, speed = steps.reached
@@ -239,7 +240,7 @@ def _stopping(ground: Ground, table: Rows, arc: float, speed: float, steering: f
     where, last = arc / ground.step, len(table) - 1
     index = int(where)
     index, share = (index, where - index) if index <= last else (last, 1.0)
-    a, b, c, d, e, p, q, r, s, t = table[index]
+    a, b, c, d, e, _, p, q, r, s, t, _ = table[index]
     glide = ground.snow.glide_acceleration(a + share * p, d + share * s, speed)
     sideways = 1.0 - _smooth_step(arc - ground.stop_from, 0.0, SKID_FADES)
     if sideways > 0.0:
