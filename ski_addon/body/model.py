@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
@@ -55,8 +56,12 @@ class SkierModel:
         return mujoco.MjData(self.mujoco)
 
 
+@lru_cache(maxsize=16)
 def build_skier_model(skier: SkierSpec) -> SkierModel:
-    """Build the MuJoCo model of a person with boots, skis and poles."""
+    """Build the MuJoCo model of a person with boots, skis and poles.
+
+    The same skier always has the same one: runs keep their states in `mujoco.MjData` and never change the model.
+    """
     import mujoco
 
     skeleton = build_skeleton(skier)

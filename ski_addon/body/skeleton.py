@@ -8,7 +8,7 @@ stands upright with hanging arms (the zero configuration). A ski's frame lies in
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -55,9 +55,9 @@ POLE_TILT = np.deg2rad(136.0)
 """Angle from forearm to pole with its spring at rest; in the skiing stance the pole then trails down and back."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Kinematic tree with inertia; arrays are read-only.
+    """Kinematic tree with inertia; arrays are read-only, and one is equal to itself only.
 
     `parent` (20,) index or -1; `offset` (20, 3) [m] and `rotation` (20, 4) of each body frame in its parent's at zero
     angles; `joint_body`, `joint_qpos`, `joint_dof` (35,) indices, `joint_axis` (35, 3) in the body frame; `mass` (20,)
@@ -113,8 +113,12 @@ class Skeleton:
         return int(self.joint_qpos[self.joint_names.index(joint_name)])
 
 
+@lru_cache(maxsize=32)
 def build_skeleton(skier: SkierSpec) -> Skeleton:
-    """Return the skeleton of a person and equipment: `skier.mass` is all that the snow carries, equipment included."""
+    """Return the skeleton of a person and equipment: `skier.mass` is all that the snow carries, equipment included.
+
+    The same skier always has the same one.
+    """
     equipment = 2 * (skier.boot_mass + skier.ski_mass + skier.pole_mass)
     segments = person_segments(skier.mass - equipment, skier.height, skier.sex)
     sizes = _Sizes.of(skier)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -53,6 +54,7 @@ class Stance:
     pitch: float
 
 
+@lru_cache(maxsize=32)
 def build_stance(skeleton: Skeleton, knee_bend: float, tuck: float = 0.0) -> Stance:
     """Return the stance with knees bent by `knee_bend` [rad] and the centre of mass over the middle of the skis; `tuck`
     0..1 makes it low against the air.
@@ -72,6 +74,7 @@ def build_stance(skeleton: Skeleton, knee_bend: float, tuck: float = 0.0) -> Sta
 
     angle = brentq(forward, -0.9, 0.9, xtol=1e-12)
     qpos = _pose(skeleton, reach, angle, tuck)
+    qpos.setflags(write=False)
     extension, retraction = reach_at(STRAIGHTEST_KNEE) - reach, reach - reach_at(DEEPEST_KNEE)
     return Stance(
         qpos,
