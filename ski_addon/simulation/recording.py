@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import json
-import math
 import struct
 import zipfile
 import zlib
@@ -180,8 +179,9 @@ class Recording:
             with zipfile.ZipFile(source) as archive:
                 if sum(info.file_size for info in archive.infolist()) > LARGEST_BYTES:
                     raise RecordingError(source, f"it would unpack to more than {LARGEST_BYTES >> 30} GiB")
-                header = _read_header(source, _read_member(archive, "header"))
-                arrays = {name: _read_member(archive, name) for name in array_names()}
+            with np.load(source, allow_pickle=False) as members:
+                header = _read_header(source, members)
+                arrays = {name: members[name] for name in array_names()}
         except KeyError as missing:
             raise RecordingError(source, f"it lacks {missing}; simulate again") from None
         except (*DAMAGE, zipfile.BadZipFile) as problem:
@@ -203,21 +203,8 @@ def _write_member(archive: zipfile.ZipFile, name: str, array: np.ndarray) -> Non
         member.write(array.reshape(-1).view(np.uint8).data)
 
 
-def _read_member(archive: zipfile.ZipFile, name: str) -> np.ndarray:
-    """Return one array as `np.load` would, over the very bytes that were read; nothing is unpickled."""
-    if f"{name}.npy" not in archive.NameToInfo:
-        raise KeyError(name)
-    content = archive.read(f"{name}.npy")
-    stream = io.BytesIO(content)
-    version = np.lib.format.read_magic(stream)
-    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-    shape, fortran, dtype = read(stream)
-    flat = np.frombuffer(content, dtype, math.prod(shape), stream.tell())
-    return flat.reshape(shape, order="F" if fortran else "C")
-
-
-def _read_header(source: Path, text: np.ndarray) -> dict[str, Any]:
-    document = json.loads(text.tobytes())
+def _read_header(source: Path, members: Any) -> dict[str, Any]:
+    document = json.loads(io.BytesIO(members["header"].tobytes()).read())
     if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
         raise RecordingError(source, "it is not a recording of a ski run")
     version = document.pop("format_version", None)
