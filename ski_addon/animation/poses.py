@@ -99,15 +99,11 @@ def body_poses_at(recording: Recording, skeleton: Skeleton, time: Array, frame: 
     Positions are linear and rotations slerped between the two recorded states around each time.
     """
     where = bracket(np.asarray(recording.time, dtype=float) - recording.time[0], time)
-    position_low, rotation_low = forward_kinematics(skeleton, recording.qpos[where.low])
-    position_high, rotation_high = forward_kinematics(skeleton, recording.qpos[where.high])
-    share = where.share[:, None]
-    position = position_low * (1.0 - share[..., None]) + position_high * share[..., None]
-    quaternion = slerp(
-        quaternion_from_matrix(rotation_low),
-        quaternion_from_matrix(rotation_high),
-        np.broadcast_to(share, position.shape[:2]),
-    )
+    places, rotations = forward_kinematics(skeleton, recording.qpos[np.concatenate((where.low, where.high))])
+    low, high = slice(0, len(where.low)), slice(len(where.low), None)
+    share, turns = where.share[:, None], quaternion_from_matrix(rotations)
+    position = places[low] * (1.0 - share[..., None]) + places[high] * share[..., None]
+    quaternion = slerp(turns[low], turns[high], np.broadcast_to(share, position.shape[:2]))
     frame = np.arange(len(time), dtype=float) if frame is None else frame
     return BodyPoses(frame, np.asarray(time, dtype=float), position, quaternion, tuple(skeleton.body_names))
 
