@@ -90,3 +90,14 @@ def test_axes_become_columns_and_are_normalised():
     np.testing.assert_allclose(
         frames.normalized(np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 2.0]]))[:, 1:], [[0.8, 0], [0, 1]]
     )
+
+
+def test_cross_products_of_components_are_numpys():
+    a, b = np.random.default_rng(3).normal(size=(2, 5, 3))
+    np.testing.assert_allclose(frames.cross(a.T, b.T), np.cross(a, b).T, atol=1e-15)
+
+
+def test_affine_maps_are_inverted_as_numpy_does_it():
+    matrix = np.tile(np.eye(4), (6, 1, 1))
+    matrix[:, :3] = np.random.default_rng(4).normal(size=(6, 3, 4))
+    np.testing.assert_allclose(frames.affine_inverse(matrix), np.linalg.inv(matrix), rtol=1e-9, atol=1e-12)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..frames import Array, continuous_quaternions, quaternion_from_matrix
+from ..frames import Array, affine_inverse, continuous_quaternions, quaternion_from_matrix
 from .bone_map import BoneMap
 from .poses import BodyPoses
 
@@ -54,7 +54,7 @@ def bone_keyframes(
     pose = _pose_matrices(poses, bone_map, rest, armature_from_world)
     wanted = {entry.bone: entry for entry in bone_map.entries}
     parents = {int(rest.parent[index]) for index, bone in enumerate(rest.bones) if bone in wanted}
-    inverse = {parent: inverse_of(pose[parent]) for parent in parents if parent >= 0}
+    inverse = {parent: affine_inverse(pose[parent]) for parent in parents if parent >= 0}
     channels = []
     for index, bone in enumerate(rest.bones):
         if bone not in wanted:
@@ -96,22 +96,6 @@ def _basis(index: int, pose: list[Array], inverse: dict[int, Array], rest: RestP
         return np.linalg.inv(rest.bone_matrix[index]) @ pose[index]
     local = inverse[int(rest.parent[index])] @ pose[index]
     return np.linalg.inv(_parent_from_bone(index, rest)) @ local
-
-
-def inverse_of(matrix: Array) -> Array:
-    """Return the inverses (m, 4, 4) of affine maps (m, 4, 4); numpy's own takes many times longer for small ones."""
-    x, y, z, place = np.ascontiguousarray(np.moveaxis(matrix[:, :3], 0, -1)).transpose(1, 0, 2)  # columns, (3, m) each
-    rows = np.stack((_cross(y, z), _cross(z, x), _cross(x, y)))
-    rows /= np.sum(rows[0] * x, axis=0)
-    out = np.zeros_like(matrix)
-    out[:, :3, :3] = rows.transpose(2, 0, 1)
-    out[:, :3, 3] = -np.sum(rows * place, axis=1).T
-    out[:, 3, 3] = 1.0
-    return out
-
-
-def _cross(a: Array, b: Array) -> Array:
-    return np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
 
 
 def _without_scale(rotation: Array) -> Array:

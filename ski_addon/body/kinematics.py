@@ -13,7 +13,7 @@ import numpy as np
 from ..frames import matrix_from_quaternion
 from .skeleton import Skeleton
 
-_CHUNK = 512
+CHUNK = 512
 """Configurations that are worked out at a time: more would not stay in the processor's cache."""
 Axes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -24,8 +24,8 @@ def forward_kinematics(skeleton: Skeleton, qpos: np.ndarray) -> tuple[np.ndarray
     count, bodies = len(qpos), len(skeleton.body_names)
     position = np.empty((count, bodies, 3))
     rotation = np.empty((count, bodies, 3, 3))
-    for first in range(0, count, _CHUNK):
-        part = slice(first, first + _CHUNK)
+    for first in range(0, count, CHUNK):
+        part = slice(first, first + CHUNK)
         for body, (origin, axes) in body_frames(skeleton, qpos[part], range(bodies)).items():
             position[part, body] = origin.T
             for column, axis in enumerate(axes):

@@ -14,7 +14,7 @@ from ..body import Skeleton
 from ..body.kinematics import moment_of_mass
 from ..body.leg_ik import SIDE_LIMIT, reach_of
 from ..body.skeleton import SIDES
-from ..frames import matrix_from_quaternion
+from ..frames import cross, matrix_from_quaternion
 from ..snow import edge_lift
 
 BOOT_PLAY = np.deg2rad(4.0)
@@ -90,7 +90,7 @@ class _Standing:
 
     def __init__(self, skeleton: Skeleton, qpos: Array, world_from_skis: Array, position: Array, com: Array) -> None:
         thigh, shank, foot, ski = (skeleton.body(f"{part}.L") for part in LEG)
-        self.thigh, self.shank, self.mass = skeleton.lengths["thigh"], skeleton.lengths["shank"], skeleton.mass
+        self.thigh, self.shank = skeleton.lengths["thigh"], skeleton.lengths["shank"]
         self.reach, self.ankle_height, self.ski_width = reach_of(skeleton), skeleton.ankle_height, skeleton.ski_width
         rotation = matrix_from_quaternion(qpos[:, 3:7])
         offsets = np.array([skeleton.offset[skeleton.body(f"thigh.{side}")] for side in SIDES])
@@ -110,6 +110,7 @@ class _Standing:
         self.ahead, self.over = place[0], place[2]  # moment of foot and ski about the ankle
         self.limbs = float(skeleton.mass[thigh] + skeleton.mass[shank])
         below = self.foot + skeleton.mass[shank]
+        # a leg's moment is that of all its mass at the hip, and these along thigh and shank
         self.along_thigh = float(skeleton.mass[thigh] * skeleton.com[thigh][2] - below * self.thigh)
         self.along_shank = float(skeleton.mass[shank] * skeleton.com[shank][2] - self.foot * self.shank)
 
@@ -128,37 +129,40 @@ class _Standing:
         """Return how far (3, n) [m] the centre of mass is from where it should be for a `pelvis` there (3, n), and the
         edges (2, n) [rad] of skis in boots without play.
         """
-        ankle, hip = self.ankles(edge), pelvis[:, None] + self.hip
-        line = hip - ankle
-        distance = np.sqrt(_dot(line, line))
-        held = np.clip(distance, *self.reach)
-        up = line / distance
-        knee_axis = _cross(up, self.x)
-        knee_axis /= np.sqrt(_dot(knee_axis, knee_axis))
+        hip = pelvis[:, None] + self.hip
+        knee_axis, thigh, to_ankle, shank = self._bones(hip, self.ankles(edge))
         rigid = -np.arctan2(_dot(self.z, knee_axis), _dot(self.y, knee_axis))
         boot = np.clip(rigid - edge, -SIDE_LIMIT, SIDE_LIMIT)
-        cosine = np.clip((held**2 - self.thigh**2 - self.shank**2) / (2.0 * self.thigh * self.shank), -1.0, 1.0)
-        sine = np.sqrt(1.0 - cosine**2)
-        shank = ((self.shank + self.thigh * cosine) * up + self.thigh * sine * _cross(knee_axis, up)) / held
-        thigh = hip - ankle - self.shank * shank
-        thigh /= np.sqrt(_dot(thigh, thigh))
-        ahead, over = self.x, _cross(self.x, knee_axis)
-        if np.any(held != distance):  # the chain of a leg out of reach does not end at the ankle
-            true = sine * _cross(knee_axis, thigh) + cosine * thigh
-            c, s = _dot(true, shank), _dot(true, _cross(knee_axis, shank))
-            shank, ahead, over = true, c * ahead - s * over, s * ahead + c * over
+        ahead, over = self.x, cross(self.x, knee_axis)
+        if shank is not to_ankle:  # the foot turns with it
+            c, s = _dot(shank, to_ankle), _dot(shank, cross(knee_axis, to_ankle))
+            ahead, over = c * ahead - s * over, s * ahead + c * over
         over = np.cos(boot) * over - np.sin(boot) * knee_axis
         legs = self.along_thigh * thigh + self.along_shank * shank + self.ahead * ahead + self.over * over
         legs += (self.limbs + self.foot) * hip
         moment = self.upper * pelvis + np.sum(legs, axis=1)
         return (self.wanted - moment) / self.all, rigid
 
+    def _bones(self, hip: Array, ankle: Array) -> tuple[Array, Array, Array, Array]:
+        """Return, (3, 2, n) each, the knees' axes as in `solve_leg`, and the directions up along thighs, up from the
+        ankles as they were for a leg within reach, and up along shanks: the same array where all ankles are.
+        """
+        line = hip - ankle
+        distance = np.sqrt(_dot(line, line))
+        held = np.clip(distance, *self.reach)
+        up = line / distance
+        knee_axis = cross(up, self.x)
+        knee_axis /= np.sqrt(_dot(knee_axis, knee_axis))
+        cosine = np.clip((held**2 - self.thigh**2 - self.shank**2) / (2.0 * self.thigh * self.shank), -1.0, 1.0)
+        sine = np.sqrt(1.0 - cosine**2)
+        to_ankle = ((self.shank + self.thigh * cosine) * up + self.thigh * sine * cross(knee_axis, up)) / held
+        thigh = line - self.shank * to_ankle
+        thigh /= np.sqrt(_dot(thigh, thigh))
+        if np.all(held == distance):
+            return knee_axis, thigh, to_ankle, to_ankle
+        return knee_axis, thigh, to_ankle, sine * cross(knee_axis, thigh) + cosine * thigh
+
 
 def _dot(a: Array, b: Array) -> Array:
     """Return the dot products (...) of vectors (k, ...)."""
     return np.einsum("i...,i...->...", a, b)
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """Return the cross products (3, ...) of vectors (3, ...)."""
-    return np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ski_addon.body import build_skier_model, centre_of_mass, forward_kinematics
+from ski_addon.body.kinematics import CHUNK, moment_of_mass
 from ski_addon.spec import SkierSpec
 from tests.ski_runs import mirrored_qpos, random_configuration
 
@@ -27,6 +28,28 @@ def test_frames_and_centre_of_mass_are_mujocos(person):
         np.testing.assert_allclose(position[i], data.xpos[1:], atol=1e-13)
         np.testing.assert_allclose(rotation[i], data.xmat[1:].reshape(-1, 3, 3), atol=1e-13)
         np.testing.assert_allclose(com[i], data.subtree_com[1], atol=1e-13)
+
+
+def test_many_configurations_are_worked_out_in_parts_as_each_by_itself():
+    model = build_skier_model(SkierSpec())
+    rng = np.random.default_rng(1)
+    qpos = np.array([random_configuration(model, rng) for _ in range(CHUNK + 3)])
+    position, rotation = forward_kinematics(model.skeleton, qpos)
+    for i in (0, CHUNK - 1, CHUNK, CHUNK + 2):
+        alone = forward_kinematics(model.skeleton, qpos[i : i + 1])
+        np.testing.assert_allclose(position[i], alone[0][0], atol=1e-14)
+        np.testing.assert_allclose(rotation[i], alone[1][0], atol=1e-14)
+
+
+def test_moment_of_some_bodies_is_their_mass_times_their_centre():
+    model = build_skier_model(SkierSpec())
+    skeleton, rng = model.skeleton, np.random.default_rng(2)
+    qpos = np.array([random_configuration(model, rng) for _ in range(4)])
+    bodies = [0, skeleton.body("thigh.R"), skeleton.body("shank.R")]
+    position, rotation = forward_kinematics(skeleton, qpos)
+    centre = {body: position[:, body] + rotation[:, body] @ skeleton.com[body] for body in bodies}
+    expected = sum(skeleton.mass[body] * centre[body] for body in bodies)
+    np.testing.assert_allclose(moment_of_mass(skeleton, qpos, bodies).T, expected, atol=1e-12)
 
 
 def test_mirrored_configuration_is_the_mirror_image():
