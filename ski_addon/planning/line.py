@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..course import Track
-from ..frames import matrix_from_columns, normalized, rotation_about
+from ..frames import matrix_from_columns, normalized
 from ..gravity import GRAVITY
 from ..snow import Snow
 from .ride import Ride
@@ -122,14 +122,15 @@ def turned_frames(tangent: np.ndarray, up: np.ndarray, steering: np.ndarray) -> 
     (n, 3) about `up` (n, 3), the left of it, and `up`.
     """
     across = normalized(np.cross(up, tangent))
-    return matrix_from_columns(np.cross(across, up), across, up) @ rotation_about("z", steering)
+    ahead = np.cross(across, up)
+    c, s = np.cos(steering)[:, None], np.sin(steering)[:, None]
+    return matrix_from_columns(c * ahead + s * across, c * across - s * ahead, up)
 
 
 def frame_spin(frame: np.ndarray, time: np.ndarray) -> np.ndarray:
     """Return the angular velocity (n, 3) [rad/s] of frames (n, 3, 3) in their own axes, by central differences."""
     rate = np.swapaxes(frame, -1, -2) @ np.gradient(frame, time, axis=0, edge_order=2)
-    turning = 0.5 * (rate - np.swapaxes(rate, -1, -2))
-    return np.stack((turning[:, 2, 1], turning[:, 0, 2], turning[:, 1, 0]), axis=1)
+    return 0.5 * (rate[:, (2, 0, 1), (1, 2, 0)] - rate[:, (1, 2, 0), (2, 0, 1)])
 
 
 def body_normals(track: Track) -> np.ndarray:

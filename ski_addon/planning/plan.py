@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..course import Track, speed_to_hold
-from ..gravity import GRAVITY, STANDARD_GRAVITY
-from ..snow import Snow
+from ..course import Track
+from ..gravity import STANDARD_GRAVITY
 from ..spec import RunSpec
-from .absorption import Sink, legs_for, missing_length
-from .checks import check_arrival, check_ground, check_lean, check_load, check_ranges, check_reach
+from .absorption import Sink, missing_length
+from .checks import check_ground, check_lean, check_load, check_ranges, check_reach
 from .comparison import RIGID_LEAN
-from .line import Line, TrackSpline, turned_frames
-from .pendulum import Legs, Pendulum, balanced_pendulum, mirrored, rigid_pendulum, upright
+from .line import Line, turned_frames
 from .pose import plan_poses
-from .ride import Body, Rider, SpeedControl
-from .stance import Stance, build_stance
+from .speed_and_lean import SpeedAndLean
+from .stance import build_stance
 
 if TYPE_CHECKING:
     from ..body import SkierModel
@@ -88,9 +86,9 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
     """
     stance = build_stance(model.skeleton, np.deg2rad(spec.technique.knee_bend_deg), spec.technique.tuck)
     check_ground(spec, stance)
-    sink = Sink(track)
+    sink, speed_and_lean = Sink(track), SpeedAndLean(spec, track, stance)
     for _ in range(MOST_SINKS):
-        line, pendulum = _balance(spec, track, stance, sink)
+        line, pendulum = speed_and_lean.found(sink)
         if spec.technique.inclination:
             check_lean(spec, line, pendulum, stance.height)
             if spec.technique.equations not in RIGID_LEAN:  # the paper's lean asks for less than none
@@ -125,50 +123,6 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         load=pendulum.normal / STANDARD_GRAVITY,
         ski_frame=skis,
         steering=line.steering,
-    )
-
-
-def _balance(spec: RunSpec, track: Track, stance: Stance, sink: Sink) -> tuple[Line, Pendulum]:
-    """Find speed and lean together: lean depends on speed, and a leaning skier's skis run faster than the body."""
-    snow, spline = Snow.of(spec.snow, spec.skier, spec.technique.tuck), TrackSpline(track)
-    rider = Rider(track, snow, speed_control(spec, track))
-    body = Body(
-        normal=-(track.surface_normal @ GRAVITY), swing=np.zeros(len(track.arc_length)), arc_length=track.arc_length
-    )
-    before = None
-    for _ in range(25):
-        ride = rider.ride(body)
-        check_arrival(track, ride)
-        line = spline.line(ride, snow)
-        if not spec.technique.inclination:
-            return line, upright(line, stance.height)
-        pendulum = _pendulum(spec, line, legs_for(spec, line, stance, sink))
-        if before is not None and _change(before, line) < 1e-6:
-            break
-        before, body = line, Body(pendulum.normal, pendulum.swing, line.arc_length)
-    return line, pendulum
-
-
-def _pendulum(spec: RunSpec, line: Line, legs: Legs) -> Pendulum:
-    if spec.technique.equations in RIGID_LEAN:
-        return rigid_pendulum(line, legs)
-    pendulum = balanced_pendulum(line, legs)
-    return mirrored(pendulum) if spec.technique.equations == "printed_sign" else pendulum
-
-
-def _change(before: Line, after: Line) -> float:
-    """Return how much the speed [m/s] of two rides of one track differs at most."""
-    return float(np.max(np.abs(np.interp(after.arc_length, before.arc_length, before.speed) - after.speed)))
-
-
-def speed_control(spec: RunSpec, track: Track) -> SpeedControl:
-    """Return what the run document says about the skier's speed."""
-    technique, side = spec.technique, float(track.curvature[np.argmax(track.arc_length >= track.stop_from) - 1])
-    return SpeedControl(
-        most=speed_to_hold(spec),
-        skid=np.deg2rad(technique.skid_max_deg),
-        deceleration=technique.stop_deceleration,
-        stop_side=1 if side >= 0 else -1,
     )
 
 

@@ -90,17 +90,17 @@ def plan_ride(track: Track, snow: Snow, body: Body, control: SpeedControl, step:
 class Rider:
     """Integrates rides of one track by bodies that lean differently.
 
-    What the track gives is worked out once, in tables of even steps along it.
+    What the track gives is worked out once, in tables of even steps along it, at `places` (m,) [m].
     """
 
     def __init__(self, track: Track, snow: Snow, control: SpeedControl) -> None:
         """Take what all rides have in common."""
         count = max(int(math.ceil(track.length / TABLE_STEP)), 2)
         self.length, self._step, self._last = track.length, track.length / count, count - 1
-        self._places = np.linspace(0.0, track.length, count + 1)
+        self.places = np.linspace(0.0, track.length, count + 1)
         self.snow, self.control, self.track = snow, control, track
         columns = (track.tangent @ GRAVITY, track.left @ GRAVITY, track.curvature)
-        self._columns = [np.interp(self._places, track.arc_length, column) for column in columns]
+        self._columns = [np.interp(self.places, track.arc_length, column) for column in columns]
         self._foreseen: Rows | None = None
         if not math.isinf(control.most):
             mean = [_blurred(column, FORESIGHT / self._step) for column in self._columns]
@@ -137,7 +137,7 @@ class Rider:
 
     def ride(self, body: Body, time_step: float = TIME_STEP) -> Ride:
         """Return the ride of `body` to the end of the track, or until the skier stands long enough or sticks."""
-        normal, swing = (np.interp(self._places, body.arc_length, column) for column in (body.normal, body.swing))
+        normal, swing = (np.interp(self.places, body.arc_length, column) for column in (body.normal, body.swing))
         ground = Ground(self._step, self.track.stop_from, self.length, self.snow)
         steps, control = Steps(self.track.start_speed, time_step), self.control
         table: Rows | None = None

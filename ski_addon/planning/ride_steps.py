@@ -237,6 +237,10 @@ def stop(steps: Steps, ground: Ground, table: Rows, side: int, deceleration: flo
 
 def _stopping(ground: Ground, table: Rows, arc: float, speed: float, steering: float, deceleration: float) -> float:
     """Return v' [m/s^2] of a skier who throws the skis across the track."""
+    across = _smooth_step(abs(steering), BRAKE_FROM, BRAKE_TO)
+    brake = deceleration * min(speed / SOFT_SPEED, 1.0)
+    if across == 1.0:
+        return -brake
     where, last = arc / ground.step, len(table) - 1
     index = int(where)
     index, share = (index, where - index) if index <= last else (last, 1.0)
@@ -246,8 +250,7 @@ def _stopping(ground: Ground, table: Rows, arc: float, speed: float, steering: f
     if sideways > 0.0:
         skid = (b + share * q - (c + share * r) * speed * speed) * math.tan(steering)
         glide += sideways * (skid - (e + share * t) / math.cos(steering))
-    across = _smooth_step(abs(steering), BRAKE_FROM, BRAKE_TO)
-    return (1.0 - across) * glide - across * deceleration * min(speed / SOFT_SPEED, 1.0)
+    return (1.0 - across) * glide - across * brake
 
 
 def _smooth_step(value: float, low: float, high: float) -> float:

@@ -2,8 +2,8 @@
 
 The upper body keeps its angles, so its share of the centre of mass moves with the pelvis. The legs reach from the hips
 to the skis, and the boots decide how the skis are edged. Hips and edges follow from each other; both are found by
-corrections, each place by itself, that learn from the two before (Anderson's mixing). Vectors are (3, ...), their
-components first: numpy is quickest with whole rows.
+corrections, mixed for each place by itself. Vectors are (3, ...), their components first: numpy is quickest with whole
+rows.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ..body.leg_ik import SIDE_LIMIT, reach_of
 from ..body.skeleton import SIDES
 from ..frames import cross, matrix_from_quaternion
 from ..snow import edge_lift
+from .mixing import Mixing, dot
 
 BOOT_PLAY = np.deg2rad(4.0)
 """How much of the boot's 5 degrees of side play the plan uses; approached smoothly."""
@@ -40,7 +41,7 @@ def place_pelvis(
     body = _Standing(skeleton, qpos, world_from_skis, position, com)
     lean = np.repeat(inclination[None], 2, axis=0)
     state = np.concatenate((body.guess(lean), lean))
-    mixing = _Mixing()
+    mixing = Mixing()
     for _ in range(MOST_ROUNDS):
         moved, misfit = body.missing(state[:3], state[3:])
         misfit -= inclination
@@ -50,39 +51,6 @@ def place_pelvis(
             break
         state = state + mixing.step(change)
     return np.ascontiguousarray(state[:3].T), np.ascontiguousarray(state[3:].T)
-
-
-class _Mixing:
-    """Steps (k, n) towards where a change (k, n) vanishes, learnt from how it answered to the two steps before."""
-
-    def __init__(self) -> None:
-        self._change: Array | None = None
-        self._step = np.zeros(0)
-        self._answers: list[tuple[Array, Array]] = []
-
-    def step(self, change: Array) -> Array:
-        """Return the next step."""
-        step = change
-        if self._change is not None:
-            answer = change - self._change
-            self._answers = [(answer, answer + self._step), *self._answers[:1]]
-            step = self._mixed(change)
-        self._change, self._step = change, step
-        return step
-
-    def _mixed(self, change: Array) -> Array:
-        (last, moved), *older = self._answers
-        own, along = _dot(last, last), _dot(last, change)
-        share = along / np.maximum(own, 1e-300)
-        if not older:
-            return change - share * moved
-        ((other, moved_before),) = older
-        square, across, aside = _dot(other, other), _dot(last, other), _dot(other, change)
-        area = own * square - across * across
-        apart = area > 1e-9 * own * square  # else both say the same, and the last one is enough
-        area = np.where(apart, area, 1.0)
-        share = np.where(apart, (square * along - across * aside) / area, share)
-        return change - share * moved - np.where(apart, (own * aside - across * along) / area, 0.0) * moved_before
 
 
 class _Standing:
@@ -131,11 +99,11 @@ class _Standing:
         """
         hip = pelvis[:, None] + self.hip
         knee_axis, thigh, to_ankle, shank = self._bones(hip, self.ankles(edge))
-        rigid = -np.arctan2(_dot(self.z, knee_axis), _dot(self.y, knee_axis))
+        rigid = -np.arctan2(dot(self.z, knee_axis), dot(self.y, knee_axis))
         boot = np.clip(rigid - edge, -SIDE_LIMIT, SIDE_LIMIT)
         ahead, over = self.x, cross(self.x, knee_axis)
         if shank is not to_ankle:  # the foot turns with it
-            c, s = _dot(shank, to_ankle), _dot(shank, cross(knee_axis, to_ankle))
+            c, s = dot(shank, to_ankle), dot(shank, cross(knee_axis, to_ankle))
             ahead, over = c * ahead - s * over, s * ahead + c * over
         over = np.cos(boot) * over - np.sin(boot) * knee_axis
         legs = self.along_thigh * thigh + self.along_shank * shank + self.ahead * ahead + self.over * over
@@ -148,21 +116,16 @@ class _Standing:
         ankles as they were for a leg within reach, and up along shanks: the same array where all ankles are.
         """
         line = hip - ankle
-        distance = np.sqrt(_dot(line, line))
+        distance = np.sqrt(dot(line, line))
         held = np.clip(distance, *self.reach)
         up = line / distance
         knee_axis = cross(up, self.x)
-        knee_axis /= np.sqrt(_dot(knee_axis, knee_axis))
+        knee_axis /= np.sqrt(dot(knee_axis, knee_axis))
         cosine = np.clip((held**2 - self.thigh**2 - self.shank**2) / (2.0 * self.thigh * self.shank), -1.0, 1.0)
         sine = np.sqrt(1.0 - cosine**2)
         to_ankle = ((self.shank + self.thigh * cosine) * up + self.thigh * sine * cross(knee_axis, up)) / held
         thigh = line - self.shank * to_ankle
-        thigh /= np.sqrt(_dot(thigh, thigh))
+        thigh /= np.sqrt(dot(thigh, thigh))
         if np.all(held == distance):
             return knee_axis, thigh, to_ankle, to_ankle
         return knee_axis, thigh, to_ankle, sine * cross(knee_axis, thigh) + cosine * thigh
-
-
-def _dot(a: Array, b: Array) -> Array:
-    """Return the dot products (...) of vectors (k, ...)."""
-    return np.einsum("i...,i...->...", a, b)

@@ -16,8 +16,8 @@ from ..errors import SkiAddonError
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..planning import as_planned
 from ..planning.line import body_normals
-from ..planning.plan import speed_control
 from ..planning.ride import Body, plan_ride
+from ..planning.speed_and_lean import speed_control
 from ..snow import Snow
 from ..spec import RunSpec
 from ..terrain import PlaneTerrain, Terrain, build_terrain
