@@ -57,8 +57,7 @@ class SpeedAndLean:
 
     def _ridden(self, sink: Sink) -> tuple[Line, Pendulum]:
         """Return the ride with the forces so far, and the lean that it needs."""
-        places = self._rider.places
-        ride = self._rider.ride(Body(*self._forces, places))
+        ride = self._rider.ride(Body(self._forces[0], self._forces[1], self._rider.places))
         check_arrival(self._track, ride)
         line = self._spline.line(ride, self._snow)
         if not self._spec.technique.inclination:
