@@ -99,16 +99,30 @@ def matrix_from_quaternion(q: Array) -> Array:
 def quaternion_from_matrix(matrix: Array) -> Array:
     """Return unit quaternions (..., 4) of rotation matrices (..., 3, 3), from the largest of the four squares."""
     m = np.asarray(matrix, dtype=float)
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.ascontiguousarray(np.moveaxis(m.reshape(-1, 3, 3), 0, -1))
-    trace = xx + yy + zz
-    candidates = np.empty((4, 4, len(trace)))  # row i is the quaternion times four times its part i
-    candidates[0] = 1 + trace, zy - yz, xz - zx, yx - xy
-    candidates[1] = candidates[0, 1], 1 + xx - yy - zz, xy + yx, xz + zx
-    candidates[2] = candidates[0, 2], candidates[1, 2], 1 + yy - xx - zz, yz + zy
-    candidates[3] = candidates[0, 3], candidates[1, 3], candidates[2, 3], 1 + zz - xx - yy
-    largest = np.argmax(np.stack((trace, xx, yy, zz)), axis=0)
-    chosen = candidates[largest, :, np.arange(len(trace))].reshape(*m.shape[:-2], 4)
-    return np.asarray(chosen / np.linalg.norm(chosen, axis=-1, keepdims=True))
+    parts = np.ascontiguousarray(np.moveaxis(m.reshape(-1, 9), 0, -1))  # (9, n)
+    xx, yy, zz = parts[0], parts[4], parts[8]
+    largest = np.argmax(np.stack((xx + yy + zz, xx, yy, zz)), axis=0)
+    out = np.empty((4, len(largest)))
+    for part in range(4):
+        where = largest == part
+        if where.all():
+            out[:] = _quaternion_times(part, parts)
+        elif where.any():
+            out[:, where] = _quaternion_times(part, parts[:, where])
+    out /= np.sqrt(np.sum(out * out, axis=0))
+    return np.ascontiguousarray(out.T).reshape(*m.shape[:-2], 4)
+
+
+def _quaternion_times(part: int, matrix: Array) -> tuple[Array, Array, Array, Array]:
+    """Return quaternions of matrices (9, n) times four times their own `part` number 0..3, which is not zero."""
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = matrix
+    if part == 0:
+        return 1 + (xx + yy + zz), zy - yz, xz - zx, yx - xy
+    if part == 1:
+        return zy - yz, 1 + xx - yy - zz, xy + yx, xz + zx
+    if part == 2:
+        return xz - zx, xy + yx, 1 + yy - xx - zz, yz + zy
+    return yx - xy, xz + zx, yz + zy, 1 + zz - xx - yy
 
 
 def continuous_quaternions(q: Array) -> Array:

@@ -78,12 +78,12 @@ def _pose_matrices(
         if bone in body_of:
             body = body_of[bone]
             offset = np.linalg.inv(rest.body_matrix[body]) @ rest.bone_matrix[index]
-            matrix = world[:, body_index[body]] @ offset
-            pose.append(matrix if armature_from_world is None else armature_from_world @ matrix)
+            matrix = _after(world[:, body_index[body]], offset)
+            pose.append(matrix if armature_from_world is None else _before(armature_from_world, matrix))
         elif rest.parent[index] < 0:
             pose.append(np.broadcast_to(rest.bone_matrix[index], (len(poses.frame), 4, 4)))
         else:
-            pose.append(pose[rest.parent[index]] @ _parent_from_bone(index, rest))
+            pose.append(_after(pose[rest.parent[index]], _parent_from_bone(index, rest)))
     return pose
 
 
@@ -93,10 +93,20 @@ def _parent_from_bone(index: int, rest: RestPose) -> Array:
 
 def _basis(index: int, pose: list[Array], inverse: dict[int, Array], rest: RestPose) -> Array:
     if rest.parent[index] < 0:
-        return np.linalg.inv(rest.bone_matrix[index]) @ pose[index]
+        return _before(np.linalg.inv(rest.bone_matrix[index]), pose[index])
     local = inverse[int(rest.parent[index])] @ pose[index]
-    return np.linalg.inv(_parent_from_bone(index, rest)) @ local
+    return _before(np.linalg.inv(_parent_from_bone(index, rest)), local)
+
+
+def _after(many: Array, one: Array) -> Array:
+    """Return the products `many` (m, 4, 4) times `one` (4, 4), as one product of large matrices: it is quicker."""
+    return (many.reshape(-1, 4) @ one).reshape(-1, 4, 4)
+
+
+def _before(one: Array, many: Array) -> Array:
+    """Return the products `one` (4, 4) times `many` (m, 4, 4)."""
+    return (one @ many.transpose(1, 0, 2).reshape(4, -1)).reshape(4, -1, 4).transpose(1, 0, 2)
 
 
 def _without_scale(rotation: Array) -> Array:
-    return rotation / np.linalg.norm(rotation, axis=-2, keepdims=True)
+    return rotation / np.sqrt(np.einsum("mij,mij->mj", rotation, rotation))[:, None]
