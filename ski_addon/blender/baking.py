@@ -131,8 +131,12 @@ def part_of(settings: Any) -> Part:
 
 def key_options(settings: Any, part: Part | None, rate: float, options: BakeSpec, duration: float) -> KeyOptions:
     """Return which keys a skier's settings ask for, of a run of `duration` [s] at `rate` [frames/s]."""
-    keys = KeyOptions(settings.as_strip, settings.tolerance_deg, settings.tolerance_mm, settings.tolerance_percent)
-    return replace(keys, span=(part or part_of(settings)).span(rate, options.frame_start, duration))
+    return replace(whole_keys(settings), span=(part or part_of(settings)).span(rate, options.frame_start, duration))
+
+
+def whole_keys(settings: Any) -> KeyOptions:
+    """Return which keys a skier's settings ask for, whatever part of the run they name."""
+    return KeyOptions(settings.as_strip, settings.tolerance_deg, settings.tolerance_mm, settings.tolerance_percent)
 
 
 def _lay_ground(scene: bpy.types.Scene, settings: Any, ride: Ride, run: RunSpec, keys: KeyOptions) -> None:

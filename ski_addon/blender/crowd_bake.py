@@ -175,7 +175,7 @@ def bake_on_slope(
 
     Raises `SkiAddonError`.
     """
-    from .baking import key_options
+    from .baking import whole_keys
     from .course_objects import gate_objects
     from .ground import Place, renew_ground
     from .placing import world_from_run
@@ -186,7 +186,7 @@ def bake_on_slope(
     if settings.crowd_collection is None:
         settings.crowd_collection = bpy.data.collections.new("Crowd")
         scene.collection.children.link(settings.crowd_collection)
-    matrix, keys = world_from_run(settings), key_options(settings)
+    matrix, keys = world_from_run(settings), whole_keys(settings)
     made = bake_crowd(crowd, scene, settings.crowd_collection, options, matrix, keys, progress)
     if made.ride is not None:
         own_mesh, run = settings.slope_mesh is not None, made.courses[0][0]
