@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from .body import SkierModel, build_skier_model
 from .course import Track, build_track
 from .planning import MotionPlan, as_planned, plan_motion
-from .simulation import Progress, Recording, Simulation, check_pushes, resume, simulate
+from .simulation import Checkpoints, Progress, Recording, Simulation, check_pushes, resume, simulate
 from .spec import RunSpec
 from .terrain import Terrain, build_terrain
 
@@ -51,6 +51,8 @@ def resume_simulation(planned: Planned, recording: Recording, time: float) -> Si
     return simulation
 
 
-def run_simulation(planned: Planned, progress: Progress | None = None) -> tuple[Recording, list[float]]:
-    """Simulate a plan to its end; return the recording and each step's wall time [s]."""
-    return simulate(planned.spec, planned.plan, planned.model, planned.terrain, progress)
+def run_simulation(
+    planned: Planned, progress: Progress | None = None, checkpoints: Checkpoints | None = None
+) -> tuple[Recording, list[float]]:
+    """Simulate a plan to its end; return the recording and each step's wall time [s]. See `simulation.simulate`."""
+    return simulate(planned.spec, planned.plan, planned.model, planned.terrain, progress, checkpoints)

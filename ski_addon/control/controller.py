@@ -36,6 +36,8 @@ class Command:
 class Controller:
     """Computes torques and snow forces that follow a reference."""
 
+    STATE = ("program", "balance", "slide")
+
     def __init__(
         self,
         dynamics: Dynamics,

@@ -32,6 +32,8 @@ class Dynamics:
     [N m]; `root_rows` (6, 37) are the inertia's root rows so turned.
     """
 
+    STATE = ("qpos", "qvel", "time")
+
     def __init__(self, model: SkierModel, drag_factor: float = 0.0) -> None:
         """Allocate for `model` and take a fresh MuJoCo state.
 
@@ -95,6 +97,15 @@ class Dynamics:
         self.qvel.take(self.model.body_dof, out=self.velocity, mode="clip")
         self._update_skis()
         self._update_momentum()
+
+    @property
+    def time(self) -> float:
+        """MuJoCo's own clock [s], which nothing here depends on."""
+        return float(self.data.time)
+
+    @time.setter
+    def time(self, value: float) -> None:
+        self.data.time = value
 
     @property
     def root_rotation(self) -> np.ndarray:

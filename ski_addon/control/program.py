@@ -25,6 +25,11 @@ class Program:
         self.formulation = Formulation(model, snow, gains, segments)
         self.small = SmallProgram(model, snow, gains, segments) if solver == "small" else None
 
+    @property
+    def STATE(self) -> tuple[str, ...]:  # noqa: N802 - as of every class with a state
+        """The solvers there are."""
+        return ("osqp",) if self.small is None else ("small", "osqp")
+
     @cached_property
     def osqp(self) -> OsqpSolver:
         """The solver of the program as written, set up when it is first needed."""

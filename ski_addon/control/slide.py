@@ -29,6 +29,8 @@ def share_of_sliding(cosine: float) -> float:
 class Slide:
     """Shifts the motion that is followed along the skis: `shift` (3,) [m, world]; `share` 0..1 how much they slide."""
 
+    STATE = ("shift",)
+
     def __init__(self, dynamics: Dynamics, motion: Motion, time_step: float) -> None:
         """Bind to the skier and the motion; `apply` is called every `time_step` [s]."""
         self._dynamics, self._motion, self._step = dynamics, motion, time_step

@@ -33,7 +33,9 @@ from .tasks import Desired
 
 
 class SmallProgram:
-    """Builds and solves the program of one step; owns its arrays."""
+    """Builds and solves the program of one step; owns its arrays, and begins its search at the last multipliers."""
+
+    STATE = ("_z",)
 
     def __init__(self, model: SkierModel, snow: Snow, gains: Gains, segments: int) -> None:
         """Reserve room for `segments` contact points on each of the four edges."""
@@ -83,7 +85,7 @@ class SmallProgram:
         self._build_body(dynamics, desired, leg_freedom)
         K, k = self._six_equations(dynamics, desired)
         answer = self._newton.solve(K, k, patch.wrenches, patch.lower, patch.upper, self._z)
-        self._z = answer.z if answer.converged else np.zeros(6)
+        self._z[:] = answer.z if answer.converged else 0.0
         if not answer.converged:
             return None
         y = answer.z - self._cost @ (patch.wrenches @ answer.forces) + self._wish

@@ -34,7 +34,12 @@ UNBOUNDED = 1e6
 
 
 class OsqpSolver:
-    """One OSQP workspace with the sparsity of a formulation."""
+    """One OSQP workspace with the sparsity of a formulation.
+
+    What it remembers from one program to the next are the unknowns and multipliers of the last solution alone.
+    """
+
+    STATE = ("_unknowns", "_multipliers")
 
     def __init__(self, formulation: Formulation) -> None:
         """Set up with placeholder numbers; the first `solve` brings the real ones."""
@@ -69,6 +74,7 @@ class OsqpSolver:
         # the public update() and solve() copy everything into caches for derivatives: 70 microseconds a step
         self._solver = self._osqp._solver
         self._zero = (np.zeros(formulation.unknowns), np.zeros(rows))
+        self._unknowns, self._multipliers = np.zeros(formulation.unknowns), np.zeros(rows)
         self._hinge_rows, self._torque_rows = formulation.hinge_rows, formulation.torque_rows
 
     def solve(self, problem: Problem) -> Solution:
@@ -80,6 +86,8 @@ class OsqpSolver:
         """
         solver = self._solver
         solver.update_data_mat(P_x=problem.hessian, P_i=None, A_x=problem.constraints, A_i=None)
+        # said each time, for OSQP itself would go on from a third vector too, which it does not give away
+        solver.warm_start(self._unknowns, self._multipliers)
         solution = self._attempt(problem.gradient, problem.lower, problem.upper, 1)
         if solution.status == 0:
             return solution
@@ -106,11 +114,12 @@ class OsqpSolver:
             iterations += self._refine() if status == SOLVED else 0
             solver.update_rho(STEP_SIZE)
         status = 0 if status == SOLVED else status
-        unknowns = np.array(solver.solution.x)
+        unknowns, multipliers = np.array(solver.solution.x), np.array(solver.solution.y)
         if not math.isfinite(float(unknowns.sum()) + float(gradient.sum())) or status in INFEASIBLE:
             # OSQP gives no point when it finds infeasibility, and calls a program without numbers solved
-            unknowns = self._zero[0].copy()
+            unknowns, multipliers = self._zero[0].copy(), self._zero[1]
             status = status or NOT_A_NUMBER
+        self._unknowns[:], self._multipliers[:] = unknowns, multipliers
         return Solution(unknowns, iterations, status, attempt)
 
     def _refine(self) -> int:

@@ -92,7 +92,7 @@ def kept_outcome(member: Member, folder: Path) -> Outcome | None:
 
     All bytes are checked, but only the places are kept.
     """
-    from ..simulation.recording import DAMAGE
+    from ..archive import DAMAGE
 
     path = folder / recording_name(member.index)
     try:
@@ -103,7 +103,7 @@ def kept_outcome(member: Member, folder: Path) -> Outcome | None:
 
 def check_whole(path: Path) -> None:
     """Raise `RecordingError` unless the file of a recording is there and all its bytes are as they were written."""
-    from ..simulation.recording import DAMAGE
+    from ..archive import DAMAGE
 
     try:
         with zipfile.ZipFile(path) as archive:

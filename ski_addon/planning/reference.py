@@ -65,6 +65,10 @@ class Reference:
         self._basis[2, 1] = 2.0
         self._index = 0
 
+    def table(self) -> np.ndarray:
+        """Return the splines' coefficients (intervals, 4, width), cubic first."""
+        return self._coefficients
+
     def interval(self, progress: float) -> int:
         """Return the spline interval of `progress` [s, planned]; quick when it is near that of the last call."""
         starts, i, last = self._starts, self._index, len(self._starts) - 2

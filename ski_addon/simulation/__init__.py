@@ -1,5 +1,6 @@
 """Simulation: stepping, fall detection, recording and its summary."""
 
+from .checkpoint import Checkpoints
 from .clearance import GatePassing, gate_summary, recorded_gates
 from .diagnostics import summarise
 from .falls import Fall
@@ -9,6 +10,7 @@ from .resuming import resume
 from .simulation import Progress, Simulation, simulate
 
 __all__ = [
+    "Checkpoints",
     "Fall",
     "GatePassing",
     "Progress",

@@ -47,6 +47,8 @@ class Fall:
 class FallWatch:
     """Watches a run for a fall and remembers what the muscles and the solver did before it."""
 
+    STATE = ("_saturated_since", "_saturated_hinge")
+
     def __init__(self, dynamics: Dynamics, reference: Reference, terrain: Terrain, *, on_track: bool = True) -> None:
         """Watch the skier of `dynamics`, who follows `reference` on `terrain` and, if `on_track`, must keep to it."""
         self._speed = reference.columns["speed"]

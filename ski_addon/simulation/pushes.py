@@ -23,6 +23,8 @@ class Pushes:
     steps nearest to its start and duration (at least one).
     """
 
+    STATE = ("_world", "_begun")
+
     def __init__(self, pushes: tuple[PushSpec, ...], model: SkierModel, time_step: float) -> None:
         """Take over `pushes` for the bodies of `model`, in steps of `time_step` [s]."""
         import mujoco
@@ -32,7 +34,8 @@ class Pushes:
         self._bodies = [model.skeleton.body(push.body) + 1 for push in pushes]
         self._first = [round(push.start / time_step) for push in pushes]
         self._count = [max(round(push.duration / time_step), 1) for push in pushes]
-        self._world: dict[int, np.ndarray] = {}
+        self._world = np.zeros((len(pushes), 3))  # [N], fixed when a push has begun
+        self._begun = np.zeros(len(pushes), dtype=bool)
         self._jacobian = np.zeros((3, model.mujoco.nv))
         self.generalised = np.zeros(model.mujoco.nv)
         self.force = np.zeros(3)
@@ -45,8 +48,8 @@ class Pushes:
         for i, push in enumerate(self._pushes):
             if not 0 <= step - self._first[i] < self._count[i]:
                 continue
-            if i not in self._world:
-                self._world[i] = world_force(push, tangent, normal)
+            if not self._begun[i]:
+                self._world[i], self._begun[i] = world_force(push, tangent, normal), True
             self._mj.mj_jacBodyCom(dynamics.model.mujoco, dynamics.data, self._jacobian, None, self._bodies[i])
             self.generalised += self._world[i] @ self._jacobian
             self.force += self._world[i]

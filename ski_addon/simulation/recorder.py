@@ -52,12 +52,28 @@ class Recorder:
 
     def refill(self, recording: Recording, count: int) -> None:
         """Begin with the first `count` steps of `recording`."""
-        missing = count - len(self._reals)
-        if missing > 0:
-            self._reals = np.zeros((2 * count, self._reals.shape[1]))
-            self._counts = np.zeros((2 * count, len(COUNTS)), dtype=np.int32)
+        self._make_room(count)
         self.fill(0, {name: getattr(recording, name)[:count] for name in (*SHAPES, *COUNTS)})
         self.count = count
+
+    def table(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return views of everything recorded: real numbers (count, width) and whole ones (count, len(COUNTS))."""
+        return self._reals[: self.count], self._counts[: self.count]
+
+    def set_table(self, reals: np.ndarray, counts: np.ndarray) -> None:
+        """Begin with what `table` of another recorder gave; raises `ValueError` if it is none."""
+        shapes = (len(reals), self._reals.shape[1]), (len(reals), len(COUNTS))
+        if (reals.shape, counts.shape) != shapes or reals.dtype != float or counts.dtype != np.int32:
+            raise ValueError(f"steps are {reals.dtype} {reals.shape} and {counts.dtype} {counts.shape}")
+        self._make_room(len(reals))
+        self.count = len(reals)
+        self._reals[: self.count], self._counts[: self.count] = reals, counts
+
+    def _make_room(self, count: int) -> None:
+        """Have new arrays if `count` steps do not fit into the present ones."""
+        if count > len(self._reals):
+            self._reals = np.zeros((2 * count, self._reals.shape[1]))
+            self._counts = np.zeros((2 * count, len(COUNTS)), dtype=np.int32)
 
     def column(self, name: str) -> np.ndarray:
         """Return what has been recorded under `name`, (count, ...)."""

@@ -7,26 +7,20 @@ from __future__ import annotations
 
 import io
 import json
-import struct
 import zipfile
-import zlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .. import archive
+from ..archive import DAMAGE, LARGEST_BYTES
 from ..atomic import atomic_path
 from ..errors import RecordingError
 
 FORMAT = "ski-addon-recording"
 FORMAT_VERSION = 2
-DAMAGE = (OSError, ValueError, EOFError, RuntimeError, MemoryError, OverflowError, struct.error, zlib.error)
-"""What zipfile and numpy raise on damaged files."""
-_EPOCH = (1980, 1, 1, 0, 0, 0)
-LARGEST_BYTES = 16 * 2**30
-"""A recording that unpacks to more than this is not read."""
-
 
 SHAPES: dict[str, tuple[int, ...]] = {
     "time": (),
@@ -159,15 +153,10 @@ class Recording:
     def save(self, path: str | Path) -> Path:
         """Write the recording to `path`, whole or not at all; raises `OutputError` when it cannot be written."""
         target = Path(path)
-        with atomic_path(target) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_STORED) as archive:
-            _write_member(archive, "header", np.frombuffer(self._header_bytes(), dtype=np.uint8))
-            for name in array_names():
-                _write_member(archive, name, np.ascontiguousarray(getattr(self, name)))
+        header = {"format": FORMAT, "format_version": FORMAT_VERSION, **self.header}
+        with atomic_path(target) as temporary:
+            archive.write(temporary, header, {name: getattr(self, name) for name in array_names()})
         return target
-
-    def _header_bytes(self) -> bytes:
-        document = {"format": FORMAT, "format_version": FORMAT_VERSION, **self.header}
-        return json.dumps(document, sort_keys=True, ensure_ascii=False).encode()
 
     @classmethod
     def load(cls, path: str | Path) -> Recording:
@@ -176,8 +165,8 @@ class Recording:
         if not source.is_file():
             raise RecordingError(source, "there is no such file")
         try:
-            with zipfile.ZipFile(source) as archive:
-                if sum(info.file_size for info in archive.infolist()) > LARGEST_BYTES:
+            with zipfile.ZipFile(source) as packed:
+                if sum(info.file_size for info in packed.infolist()) > LARGEST_BYTES:
                     raise RecordingError(source, f"it would unpack to more than {LARGEST_BYTES >> 30} GiB")
             with np.load(source, allow_pickle=False) as members:
                 header = _read_header(source, members)
@@ -193,14 +182,6 @@ class Recording:
 def array_names() -> list[str]:
     """Return the names of a recording's arrays."""
     return [entry.name for entry in fields(Recording) if entry.name != "header"]
-
-
-def _write_member(archive: zipfile.ZipFile, name: str, array: np.ndarray) -> None:
-    """Write one array as `np.savez` would, with a fixed time stamp, and without copying it first."""
-    info = zipfile.ZipInfo(f"{name}.npy", date_time=_EPOCH)
-    with archive.open(info, "w", force_zip64=True) as member:
-        np.lib.format.write_array_header_1_0(member, np.lib.format.header_data_from_array_1_0(array))
-        member.write(array.reshape(-1).view(np.uint8).data)
 
 
 def _read_header(source: Path, members: Any) -> dict[str, Any]:

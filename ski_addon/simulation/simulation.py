@@ -18,6 +18,7 @@ from ..planning import BY_CLOCK, MotionPlan, Reference
 from ..snow import Snow
 from ..spec import RunSpec
 from ..terrain import Terrain
+from .checkpoint import Checkpoints
 from .falls import Fall, FallWatch
 from .pushes import Pushes
 from .recording import Recording
@@ -35,7 +36,10 @@ class Simulation:
     """A run in progress: `advance` it by steps, then take its `recording`.
 
     The same specification on the same machine gives the same bytes: nothing depends on time or on chance.
+    `STATE`, and what was logged, are all that the rest of a run depends on; see `checkpoint.py`.
     """
+
+    STATE = ("step_done", "progress", "arc_length", "finished", "dynamics", "controller", "_watch", "_pushes", "log")
 
     def __init__(self, spec: RunSpec, plan: MotionPlan, model: SkierModel, terrain: Terrain) -> None:
         """Put the skier at the start of `plan`, moving as planned."""
@@ -67,7 +71,7 @@ class Simulation:
         self.step_seconds: list[float] = []
         self._watch = FallWatch(self.dynamics, self.reference, terrain, on_track=steered)
         self._pushes = Pushes(spec.push, model, self.time_step)
-        self._log = StepLog(plan, model, self.reference, self.step_total + 256)
+        self.log = StepLog(plan, model, self.reference, self.step_total + 256)
         self._start()
 
     @property
@@ -104,10 +108,10 @@ class Simulation:
         ratio = np.maximum(muscles / self.model.torque_upper, muscles / self.model.torque_lower)
         self._watch.note_torques(now, ratio)
         if self.step_done % CHECK_INTERVAL == 0 or effort.solution.status != 0:
-            errors = present_errors(self._log, command, self.controller)
+            errors = present_errors(self.log, command, self.controller)
             self.fall = self._watch.check(now, self.arc_length, command, *errors)
         self._pushes.update(self.step_done, dynamics, value[columns["tangent"]], value[columns["normal"]])
-        self._log.add(now, self.progress, command, ratio, self._pushes.force, self.controller)
+        self.log.add(now, self.progress, command, ratio, self._pushes.force, self.controller)
         if self.fall is not None:
             return
         acceleration = dynamics.accelerations(effort.torque, effort.snow, self._pushes.generalised)
@@ -122,11 +126,11 @@ class Simulation:
         """
         if status is None:
             status = "finished" if self.finished else self.fall.status if self.fall else "cancelled"
-        return self._log.recording(self._header(status))
+        return self.log.recording(self._header(status))
 
     def restore(self, recording: Recording, index: int, progress: float) -> None:
         """Go on from the state at step `index` of `recording`, so far [s] into the plan; see `resuming.resume`."""
-        self._log.refill(recording, index)
+        self.log.refill(recording, index)
         self.step_done, self.progress = index, progress
         self.finished = progress >= self.plan.duration
         self.arc_length = float(recording.arc_length[index])
@@ -175,18 +179,29 @@ def _replans(spec: RunSpec) -> bool:
 
 
 def simulate(
-    spec: RunSpec, plan: MotionPlan, model: SkierModel, terrain: Terrain, progress: Progress | None = None
+    spec: RunSpec,
+    plan: MotionPlan,
+    model: SkierModel,
+    terrain: Terrain,
+    progress: Progress | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> tuple[Recording, list[float]]:
     """Simulate the whole run; return its recording and the wall time of each step [s].
 
     `progress(fraction, text)` is called about every 0.1 s of simulated time; when it returns False the run is
     cancelled and what is done is kept. A fall is not an error here: the recording's status tells.
+    With `checkpoints` it goes on from the one that is there, and saves one from time to time and when it is cancelled;
+    the recording is the same with and without. Raises `OutputError` when a checkpoint cannot be written.
     """
     simulation = Simulation(spec, plan, model, terrain)
+    if checkpoints is not None:
+        checkpoints.load(simulation)
     chunk = max(int(0.1 / simulation.time_step), 1)
     cancelled = False
     while not cancelled and simulation.advance(chunk):
         if progress is not None:
             text = f"simulating {simulation.step_done * simulation.time_step:.1f} of {plan.duration:.1f} s"
             cancelled = progress(simulation.fraction, text) is False
+        if checkpoints is not None and simulation.running:
+            (checkpoints.save if cancelled else checkpoints.offer)(simulation)
     return simulation.recording(), simulation.step_seconds

@@ -39,14 +39,22 @@ PLANNED = {
 
 
 class StepLog:
-    """Logs the steps of one simulation."""
+    """Logs the steps of one simulation.
+
+    The batch is part of the state: worked out at other steps, its last digits could be others.
+    """
+
+    STATE = (
+        *("_begin", "_value", "_place", "_rotation", "_quaternion", "_offset", "_turn", "_load_moment", "_interval"),
+        "_led_astray",
+    )
 
     def __init__(self, plan: MotionPlan, model: SkierModel, reference: Reference, expected: int) -> None:
         """Reserve room for about `expected` steps of `model` along `plan`, whose splines are `reference`."""
         self._model, self._reference = model, reference
         self._columns = reference.columns
         self._labels = (plan.phase, plan.turn)
-        self._recorder = Recorder(expected, NUMBERS, ARRAYS)
+        self.recorder = Recorder(expected, NUMBERS, ARRAYS)
         self._begin = 0  # step of the recording at which the batch begins
         self.gauge = SkiGauge(model.skeleton, reference.columns)
         self._value = np.zeros((BATCH, reference.width))
@@ -59,7 +67,7 @@ class StepLog:
 
     def refill(self, recording: Recording, count: int) -> None:
         """Begin with the first `count` steps of `recording`."""
-        self._recorder.refill(recording, count)
+        self.recorder.refill(recording, count)
         self._begin = count
 
     def add(
@@ -76,7 +84,7 @@ class StepLog:
         `ratio` (31,) are torques in units of the muscles' limits, `push` (3,) [N, world] the force from outside.
         """
         dynamics, balance, desired, effort = controller.dynamics, controller.balance, controller.desired, command.effort
-        k, skis = self._recorder.count - self._begin, self._model.ski_body
+        k, skis = self.recorder.count - self._begin, self._model.ski_body
         self._value[k] = command.sample[0]
         self._place[k], self._rotation[k] = dynamics.ski_places, dynamics.ski_rotations
         self._quaternion[k] = dynamics.xquat[skis]
@@ -91,19 +99,19 @@ class StepLog:
             *(dynamics.qpos, dynamics.qvel, effort.torque, ratio, effort.end_stop, effort.ski_force),
             *(effort.edge_normal, effort.edge_side, command.edge_angle, dynamics.com, push, balance.push),
         )
-        self._recorder.add(numbers, arrays, (0, 0, solution.iterations, solution.status, solution.attempts))
+        self.recorder.add(numbers, arrays, (0, 0, solution.iterations, solution.status, solution.attempts))
         if k == BATCH - 1:
             self._work_out()
-            self._begin = self._recorder.count
+            self._begin = self.recorder.count
 
     def recording(self, header: dict[str, object]) -> Recording:
         """Return everything logged so far under `header`."""
         self._work_out()
-        return self._recorder.recording(header)
+        return self.recorder.recording(header)
 
     def _work_out(self) -> None:
         """Fill in the rest of the batch so far."""
-        recorder, begin = self._recorder, self._begin
+        recorder, begin = self.recorder, self._begin
         n = recorder.count - begin
         if n == 0:
             return

@@ -11,6 +11,7 @@ import zipfile
 import numpy as np
 import pytest
 
+from ski_addon import archive
 from ski_addon.errors import OutputError, RecordingError
 from ski_addon.simulation import Recording
 from ski_addon.simulation import recording as recording_module
@@ -269,14 +270,14 @@ def test_output_that_is_a_folder(recording, tmp_path):
 
 
 def test_disk_that_fills_up_leaves_the_old_file_and_nothing_else(recording, saved, tmp_path, monkeypatch):
-    before, write = saved.read_bytes(), recording_module._write_member
+    before, write = saved.read_bytes(), archive._write_member
 
     def full(archive, name, array):
         if name == "tau":
             raise OSError(errno.ENOSPC, "No space left on device")
         write(archive, name, array)
 
-    monkeypatch.setattr(recording_module, "_write_member", full)
+    monkeypatch.setattr(archive, "_write_member", full)
     with pytest.raises(OutputError, match="No space left on device"):
         recording.save(saved)
     assert saved.read_bytes() == before
@@ -287,7 +288,7 @@ def test_interrupted_saving_leaves_nothing(recording, tmp_path, monkeypatch):
     def interrupt(archive, name, array):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(recording_module, "_write_member", interrupt)
+    monkeypatch.setattr(archive, "_write_member", interrupt)
     with pytest.raises(KeyboardInterrupt):
         recording.save(tmp_path / "run.npz")
     assert list(tmp_path.iterdir()) == []

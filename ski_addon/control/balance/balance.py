@@ -41,6 +41,8 @@ class Balance:
     outside as felt, and `steering` with the line of the skis.
     """
 
+    STATE = ("blend", "observer", "steering")
+
     def __init__(
         self, dynamics: Dynamics, reference: Reference, motion: Motion, time_step: float, *, replans: bool
     ) -> None:

@@ -21,6 +21,8 @@ SMOOTHING_TIME = 0.005
 class DisturbanceObserver:
     """Estimates the outside generalised force (37,) from step to step: `estimate` [N, N m]."""
 
+    STATE = ("estimate", "_inertia", "_explained", "_velocity", "_known")
+
     def __init__(self, dynamics: Dynamics, time_step: float) -> None:
         """Watch `dynamics`, which moves on by `time_step` [s] between two calls of `update`."""
         self._dynamics, self._step = dynamics, time_step

@@ -58,6 +58,8 @@ class Steering:
     `update`: `shift` s [m] and `jerk` j [m/s^3].
     """
 
+    STATE = ("offset", "rate", "acceleration")
+
     def __init__(self, regulator: Regulator, time_step: float) -> None:
         """Start on the planned line; `advance` moves on by `time_step` [s]."""
         self._regulator, self._step = regulator, time_step
