@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import apart, atomic, results
+from . import apart, atomic, environment, results
 from .errors import MissingInputError, SkiAddonError, SpecError
 from .spec import PART_KINDS, RunSpec, estimate, find_document
 from .talk import Talk, json_text, summary_lines
@@ -55,49 +56,95 @@ def plan_command(arguments: argparse.Namespace) -> int:
 
 def bake_command(arguments: argparse.Namespace) -> int:
     """`bake`: recording (or a run, simulated first), or a crowd -> .blend."""
+    from .tasks.baking import Source, bake_into
+
     talk = _talk(arguments)
     if results.is_crowd(Path(arguments.source)):
         if arguments.changes or arguments.parts:
             raise SpecError("--set", problem="cannot change a crowd that was skied", hint="simulate it again with it")
         return _show_crowd("bake", arguments, "crowd.blend")
-    recording_path = _recording_path(arguments.source)
-    default_folder = recording_path.parent if recording_path else Path(".")
-    target = _target(arguments.output or default_folder, "skier.blend")
+    path = _recording_path(arguments.source)
+    target = _target(arguments.output or (path.parent if path else Path(".")), "skier.blend")
     results.check_blender("baking")
     with atomic.output_folder(target.parent):
-        if recording_path:
-            recording = results.load_recording(recording_path)
-            spec = _recorded_spec(recording, arguments)
+        if path:
+            recording = results.load_recording(path)
+            source = Source(_recorded_spec(recording, arguments), lambda: recording, path)
         else:
             spec = _read_spec(arguments.source, arguments)
             _check_size(spec, arguments, talk)
-            recording = _simulated(spec, talk)[0]
-            results.raise_unless_finished(recording)
-        results.bake(recording, spec, target)
-    talk.say(f"wrote {target}")
-    talk.give({"blend": str(target), "spec_hash": spec.content_hash()})
+            source = Source(spec, lambda: _finished(spec, talk))
+        bake_into(source, target, talk, redo=arguments.redo)
+    talk.give({"blend": str(target), "spec_hash": source.spec.content_hash()})
     return 0
 
 
 def report_command(arguments: argparse.Namespace) -> int:
     """`report`: recording -> picture of its plots."""
+    from .tasks.simulating import report_of
+
     results.check_matplotlib()
+    talk = _talk(arguments)
     path, target = _picture_paths(arguments, "report.png")
     with atomic.output_folder(target.parent):
-        results.draw_report(results.load_recording(path), target)
-    _talk(arguments).say(f"wrote {target}")
+        report_of(path, target, talk, redo=arguments.redo)
+    talk.give({"picture": str(target)})
     return 0
 
 
 def render_command(arguments: argparse.Namespace) -> int:
-    """`render`: recording -> one picture of the slope with the skier at several instants; crowd -> its fullest one."""
+    """`render`: .blend -> its frames; recording or crowd -> one picture of it."""
+    from .tasks.rendering import FRAME_OPTIONS
+
+    results.check_blender("rendering")
+    if Path(arguments.source).suffix == ".blend":
+        return _render_frames(arguments)
+    given = [name for name in FRAME_OPTIONS if getattr(arguments, name) not in (None, False)]
+    if given:
+        option = "--" + given[0].replace("_", "-")
+        raise SpecError(option, problem="is for the frames of a .blend file", hint="bake the recording first")
     if results.is_crowd(Path(arguments.source)):
         return _show_crowd("render", arguments, "crowd.png")
-    results.check_blender("rendering")
     path, target = _picture_paths(arguments, "strobe.png")
     with atomic.output_folder(target.parent):
         results.run_blender_command("render", path, target, stop=arguments.stop)
-    _talk(arguments).say(f"wrote {target}")
+    talk = _talk(arguments)
+    talk.say(f"wrote {target}")
+    talk.give({"picture": str(target)})
+    return 0
+
+
+def _render_frames(arguments: argparse.Namespace) -> int:
+    """Render the frames of a .blend file into a folder."""
+    from .tasks.rendering import read_settings, render_into
+
+    talk, blend = _talk(arguments), Path(arguments.source)
+    if arguments.stop:
+        raise SpecError("--stop", problem="is for recordings", hint="choose frames with --frames")
+    settings = read_settings(arguments)
+    with atomic.output_folder(arguments.output or blend.parent / "frames") as folder:
+        done = render_into(blend, folder, settings, talk, redo=arguments.redo)
+    talk.give(done)
+    return 0
+
+
+def sweep_command(arguments: argparse.Namespace) -> int:
+    """`sweep`: simulate a run for every combination of some values."""
+    from .sweep import read_variations, run_sweep, sweep_lines
+    from .workers import read_jobs
+
+    talk, spec = _talk(arguments), _read_spec(arguments.spec, arguments)
+    combinations = read_variations(spec, arguments.vary)
+    for combination in combinations:
+        _check_size(combination.spec, arguments)
+    jobs = min(read_jobs(arguments.jobs), len(combinations))
+    talk.say(f"{spec.name}: {len(combinations)} runs in {jobs} processes")
+    with atomic.output_folder(arguments.output) as folder:
+        summary = run_sweep(combinations, folder, jobs, talk, report=arguments.report, redo=arguments.redo)
+    for line in sweep_lines(summary):
+        talk.say(line)
+    talk.say(f"results in {folder}")
+    talk.give(summary)
     return 0
 
 
@@ -206,16 +253,17 @@ def demo_command(arguments: argparse.Namespace) -> int:
     """`demo`: the giant-slalom preset, simulated, baked and pictured."""
     results.check_blender("the demo")
     spec, talk = RunSpec.from_toml(find_document(DEMO_PRESET)), _talk(arguments)
+    from .tasks.simulating import simulate_into
+
     talk.say(f"{spec.name}: {estimate(spec).described}")
     with atomic.output_folder(arguments.output) as folder:
-        recording, summary = _simulated(spec, talk)
-        results.write_run(folder, spec, recording, summary, report=True, talk=talk)
-        results.raise_unless_finished(recording)
+        simulated = simulate_into(spec, folder, talk, report=True, redo=arguments.redo)
+        simulated.raise_unless_finished()
         talk.say("baking skier.blend")
         results.run_blender_command("bake", folder / "recording.npz", folder / "skier.blend")
         talk.say("rendering strobe.png, about a minute")
         results.run_blender_command("render", folder / "recording.npz", folder / "strobe.png")
-    _tell(talk, spec, summary, folder)
+    _tell(talk, spec, simulated.summary, folder)
     return 0
 
 
@@ -241,19 +289,23 @@ def _picture_paths(arguments: argparse.Namespace, name: str) -> tuple[Path, Path
 
 
 def _simulate_into(spec: RunSpec, arguments: argparse.Namespace, *, report: bool) -> int:
+    from .tasks.simulating import simulate_into
+
     talk = _talk(arguments)
     _check_size(spec, arguments, talk)
     with atomic.output_folder(arguments.output) as folder:
-        recording, summary = _simulated(spec, talk)
-        results.write_run(folder, spec, recording, summary, report=report, talk=talk)
-    _tell(talk, spec, summary, folder)
-    results.raise_unless_finished(recording)
+        simulated = simulate_into(spec, folder, talk, report=report, redo=arguments.redo)
+    _tell(talk, spec, simulated.summary, folder)
+    simulated.raise_unless_finished()
     return 0
 
 
-def _simulated(spec: RunSpec, talk: Talk) -> tuple[Recording, dict[str, Any]]:
+def _finished(spec: RunSpec, talk: Talk) -> Recording:
+    """Simulate a run in memory, to its end."""
     with talk.progress() as progress:
-        return results.simulate_run(spec, progress)
+        recording = results.simulate_run(spec, progress)[0]
+    results.raise_unless_finished(recording)
+    return recording
 
 
 def _tell(talk: Talk, spec: RunSpec, summary: dict[str, Any], folder: Path) -> None:
@@ -264,7 +316,11 @@ def _tell(talk: Talk, spec: RunSpec, summary: dict[str, Any], folder: Path) -> N
 
 
 def _talk(arguments: argparse.Namespace) -> Talk:
-    return Talk(json=arguments.json, quiet=arguments.quiet)
+    log = arguments.log or os.environ.get(environment.LOG, "")
+    if log:
+        atomic.check_appendable(log)
+    openjd = arguments.openjd or environment.is_on(environment.OPENJD)
+    return Talk(json=arguments.json, quiet=arguments.quiet, openjd=openjd, log=log)
 
 
 def _read_spec(name: str, arguments: argparse.Namespace) -> RunSpec:

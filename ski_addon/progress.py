@@ -7,8 +7,11 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import TextIO
 
+from .errors import one_line
 from .spec.estimate import show_duration
 
+OPENJD_SECONDS = 1.0
+"""Wall time between two lines for Open Job Description [s]."""
 BAR_WIDTH = 28
 REDRAW_SECONDS = 0.1
 PLAIN_PARTS = 10
@@ -78,3 +81,35 @@ class ProgressDisplay:
         if self._stream is not None:
             self._stream.write(text)
             self._stream.flush()
+
+
+class OpenJobProgress:
+    """A progress callback as `ProgressDisplay`, in the lines that Open Job Description reads from a task's output.
+
+    `openjd_progress: 12.5` is in percent, `openjd_status: simulating ...` says at what; at most one of each a second.
+    """
+
+    def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
+        """Write to `stream`; `clock` returns seconds."""
+        self._stream, self._clock = stream, clock
+        self._said_at = float("-inf")
+        self._said = -1.0
+
+    def __call__(self, fraction: float, text: str) -> bool:
+        """Say that `fraction` (0..1) of the work named `text` is done; returns True (never cancels)."""
+        percent = 100.0 * min(max(fraction, 0.0), 1.0)
+        now = self._clock()
+        if now - self._said_at >= OPENJD_SECONDS or (percent == 100.0 and self._said != 100.0):
+            self._said_at, self._said = now, percent
+            self._stream.write(f"openjd_status: {one_line(text)}\nopenjd_progress: {percent:.1f}\n")
+            self._stream.flush()
+        return True
+
+    def __enter__(self) -> OpenJobProgress:
+        """Start saying."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Say no more."""

@@ -6,12 +6,11 @@ import contextlib
 import importlib.util
 import logging
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import apart, atomic
+from . import apart, atomic, interrupts
 from .errors import (
     BlenderMissingError,
     Cancelled,
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
     from .crowd import CrowdSpec
     from .robustness import PushTable
     from .simulation import Recording
+    from .simulation.checkpoint import Checkpoints
+    from .tasks.rendering import Film, RenderSettings
     from .turning.motion import TurningMotion
 
 Progress = Callable[[float, str], Any]
@@ -80,13 +81,25 @@ def plan_lines(summary: Mapping[str, Any]) -> list[str]:
     return [form.format(**summary) for form in forms]
 
 
-def simulate_run(spec: RunSpec, progress: Progress) -> tuple[Recording, dict[str, Any]]:
-    """Plan and simulate a run; returns its recording and summary, also if the skier fell."""
+def simulate_run(
+    spec: RunSpec, progress: Progress, checkpoints: Checkpoints | None = None
+) -> tuple[Recording, dict[str, Any]]:
+    """Plan and simulate a run; returns its recording and summary, also if the skier fell.
+
+    With `checkpoints` an interrupt ends it after the present step, and the recording is "cancelled".
+    """
     from .pipeline import make_plan, run_simulation
     from .simulation import summarise
 
     progress(0.0, "planning")
-    recording, step_seconds = run_simulation(make_plan(spec), progress)
+    planned = make_plan(spec)
+    if checkpoints is None:
+        recording, step_seconds = run_simulation(planned, progress)
+    else:
+        with interrupts.held() as interrupted:
+            recording, step_seconds = run_simulation(
+                planned, lambda *now: progress(*now) is not False and not interrupted(), checkpoints
+            )
     return recording, summarise(recording, step_seconds)
 
 
@@ -150,13 +163,12 @@ def raise_unless_finished(recording: Recording) -> None:
 
 def write_run(
     folder: Path, spec: RunSpec, recording: Recording, summary: Mapping[str, Any], *, report: bool, talk: Talk
-) -> None:
+) -> list[str]:
     """Write spec.toml, recording.npz, summary.json and (if asked and matplotlib is there) report.png, all or none.
 
-    A report.png of an earlier run goes if there is no new one: it would show another recording.
+    A report.png of an earlier run goes if there is no new one: it would show another recording. Returns their names.
     """
-    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=folder) as temporary:
-        stage = Path(temporary)
+    with atomic.staging_folder(folder) as stage:
         with _failures_in(folder):
             (stage / "spec.toml").write_text(spec.to_toml(), encoding="utf-8")
             (stage / "summary.json").write_text(json_text(summary), encoding="utf-8")
@@ -165,7 +177,9 @@ def write_run(
                 _report_if_possible(recording, stage / "report.png", talk)
         if not (stage / "report.png").exists():
             (folder / "report.png").unlink(missing_ok=True)
+        names = sorted(path.name for path in stage.iterdir())
         atomic.move_all(stage, folder)
+    return names
 
 
 @contextlib.contextmanager
@@ -180,10 +194,15 @@ def _failures_in(folder: Path) -> Iterator[None]:
 
 
 def _report_if_possible(recording: Recording, target: Path, talk: Talk) -> None:
+    if can_draw(talk):
+        draw_report(recording, target)
+
+
+def can_draw(talk: Talk) -> bool:
+    """Return whether a report can be drawn; if not, say so."""
     if not _has_matplotlib():
         talk.say("no report.png: matplotlib is not installed (pip install matplotlib)")
-        return
-    draw_report(recording, target)
+    return _has_matplotlib()
 
 
 def draw_report(recording: Recording, target: Path) -> None:
@@ -210,6 +229,14 @@ def render_strobe(recording: Recording, spec: RunSpec, target: Path, *, stop: bo
         render(recording, spec, target, stop=stop)
 
 
+def open_frames(blend: Path, settings: RenderSettings) -> Film:
+    """Open a .blend file to render frames of it; raises `MissingInputError` or `RenderError`."""
+    with apart.silenced():
+        from .blender.frames import FrameRenderer
+
+        return FrameRenderer(blend, settings)
+
+
 def preview(spec: RunSpec, target: Path) -> SkiAddonError | None:
     """Write the instant figure of a run: a .blend, or (by the target's suffix) one picture; in a process of its own.
 
@@ -227,10 +254,10 @@ def _write_preview(spec: RunSpec, motion: TurningMotion, target: Path) -> None:
     if target.suffix == ".blend" or apart.inside_blender() or apart.is_apart():
         draw_preview(spec, motion, target)
         return
-    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
-        document = Path(temporary, "spec.toml")
+    with atomic.staging_folder(target.parent) as stage:
+        document = stage / "spec.toml"
         document.write_text(spec.to_toml(), encoding="utf-8")
-        output = Path(temporary, "picture") / target.name
+        output = stage / "picture" / target.name
         output.parent.mkdir()
         apart.run_apart(["preview", str(document.resolve()), "--output", str(output.resolve())])
         atomic.move_all(output.parent, target.parent)
@@ -275,11 +302,11 @@ def run_blender_command(name: str, recording_path: Path, target: Path, **options
         run: Callable[..., None] = {"bake": bake, "render": render_strobe}[name]
         run(recording, recorded_spec(recording), target, **{option: on for option, on in options.items() if on})
         return
-    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
-        output = str(Path(temporary, target.name).resolve())
+    with atomic.staging_folder(target.parent) as stage:
+        output = str((stage / target.name).resolve())
         switches = [f"--{option}" for option, on in options.items() if on]
         apart.run_apart([name, str(recording_path.resolve()), "--output", output, *switches])
-        atomic.move_all(Path(temporary), target.parent)
+        atomic.move_all(stage, target.parent)
 
 
 def complain(message: str) -> None:

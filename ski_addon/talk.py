@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import sys
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TextIO
 
-from .progress import ProgressDisplay
+from .errors import one_line
+from .progress import OpenJobProgress, ProgressDisplay
 
 SUMMARY_LINES = (
     ("duration_s", "skied", "{:.2f} s"),
@@ -26,10 +29,16 @@ SUMMARY_LINES = (
 
 @dataclass(frozen=True)
 class Talk:
-    """How a command talks: with `json` only JSON goes to stdout, with `quiet` only failures are said."""
+    """How a command talks: with `json` only JSON goes to stdout, with `quiet` only failures are said.
+
+    With `openjd`, progress, notes and failures are said as Open Job Description reads them: on stdout, or on stderr
+    where stdout is to hold JSON. `log` is a file that notes and failures are added to.
+    """
 
     json: bool = False
     quiet: bool = False
+    openjd: bool = False
+    log: str = ""
 
     def say(self, line: str) -> None:
         """Say one line for a person."""
@@ -42,9 +51,37 @@ class Talk:
             sys.stdout.write(json_text(result))
             sys.stdout.flush()
 
-    def progress(self) -> ProgressDisplay:
+    def note(self, line: str) -> None:
+        """Note one line for whoever looks after the work later: in the log, and in that of a farm."""
+        if self.openjd:
+            write_line(self._farm_stream(), line)
+        self._log(line)
+
+    def tell(self, line: str) -> None:
+        """Say one line, to a person and to the log."""
+        self.say(line)
+        self._log(line)
+
+    def fail(self, message: str) -> None:
+        """Note a failure, which is said elsewhere, for a farm and in the log."""
+        if self.openjd:
+            write_line(self._farm_stream(), f"openjd_fail: {one_line(message)}")
+        self._log(f"failed: {one_line(message)}")
+
+    def progress(self) -> ProgressDisplay | OpenJobProgress:
         """Return a progress display: a bar on a terminal; plain lines on stdout, unless that is to hold JSON."""
-        return ProgressDisplay(self._progress_stream())
+        return OpenJobProgress(self._farm_stream()) if self.openjd else ProgressDisplay(self._progress_stream())
+
+    def _farm_stream(self) -> TextIO:
+        return sys.stderr if self.json else sys.stdout
+
+    def _log(self, line: str) -> None:
+        if not self.log:
+            return
+        moment = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+        # a log that cannot be written is no reason to lose the work
+        with contextlib.suppress(OSError), open(self.log, "a", encoding="utf-8") as stream:
+            stream.write(f"{moment} {line}\n")
 
     def _progress_stream(self) -> TextIO | None:
         if self.quiet:

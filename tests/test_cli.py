@@ -9,11 +9,12 @@ import signal
 
 import pytest
 
-from ski_addon import cli, results
+from ski_addon import cli, environment, results
 from ski_addon.errors import PlanInfeasible, RecordingError
 from ski_addon.spec import PART_KINDS, RunSpec, find_document
 from tests.synthetic_recording import synthetic_recording
 
+WRITTEN = ["recording.npz", "recording.task.json", "spec.toml", "summary.json"]
 SUMMARY = {"status": "finished", "duration_s": 12.0, "speed_max": 9.0, "torque_ratio_max": float("nan"), "steps": 12000}
 
 
@@ -24,13 +25,13 @@ class FakeSimulation:
         self.spec = None
         self.status, self.detail, self.failure = "finished", {}, None
 
-    def __call__(self, spec, progress):
+    def __call__(self, spec, progress, checkpoints=None):
         self.spec = spec
         progress(0.5, "simulating")
         if self.failure:
             raise self.failure
-        recording = synthetic_recording(spec, status=self.status, detail=self.detail)
-        return recording, {**SUMMARY, "status": self.status}
+        self.recording = synthetic_recording(spec, status=self.status, detail=self.detail)
+        return self.recording, {**SUMMARY, "status": self.status}
 
 
 @pytest.fixture
@@ -73,7 +74,7 @@ def refused(outcome, code, words):
 def test_run_writes_all_four_files_whole(run, simulation, tmp_path):
     code, out, err = run("run", "paper_main", "-o", tmp_path / "out")
     assert (code, err) == (0, "")
-    assert files(tmp_path / "out") == ["recording.npz", "report.png", "spec.toml", "summary.json"]
+    assert files(tmp_path / "out") == [*WRITTEN[:2], "report.png", *WRITTEN[2:]]
     assert RunSpec.from_toml(tmp_path / "out" / "spec.toml") == simulation.spec
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["status"] == "finished" and summary["torque_ratio_max"] is None
@@ -84,7 +85,7 @@ def test_run_writes_all_four_files_whole(run, simulation, tmp_path):
 def test_simulate_draws_no_report_and_removes_one_of_another_recording(run, simulation, tmp_path):
     (tmp_path / "report.png").write_text("of an earlier run")
     assert run("simulate", "paper_main", "-o", tmp_path)[0] == 0
-    assert files(tmp_path) == ["recording.npz", "spec.toml", "summary.json"]
+    assert files(tmp_path) == WRITTEN
 
 
 def test_parts_come_before_single_keys(run, simulation, tmp_path):
@@ -109,7 +110,7 @@ def test_without_matplotlib_the_run_goes_on_and_says_so(run, simulation, without
     without("matplotlib")
     code, out, err = run("run", "paper_main", "-o", tmp_path)
     assert (code, err) == (0, "") and "no report.png: matplotlib is not installed" in out
-    assert files(tmp_path) == ["recording.npz", "spec.toml", "summary.json"]
+    assert files(tmp_path) == WRITTEN
     refused(run("report", tmp_path), 3, "pip install matplotlib")
 
 
@@ -156,12 +157,13 @@ def test_infeasible_plan_leaves_nothing(run, simulation, tmp_path):
     assert files(tmp_path) == []
 
 
-def test_fall_keeps_what_was_skied_and_says_what_where_when_and_why(run, simulation, tmp_path):
+def test_fall_keeps_what_was_skied_and_says_what_where_when_and_why(run, simulation, monkeypatch, tmp_path):
     simulation.status = "fell"
     simulation.detail = {"what": "the head touched the snow", "where": 31.4, "time": 4.2, "why": "sideways push"}
     outcome = run("run", "paper_main", "-o", tmp_path)
     refused(outcome, 5, "the skier fell at 4.20 s, 31.4 m along the track: the head touched the snow; sideways push")
-    assert files(tmp_path) == ["recording.npz", "report.png", "spec.toml", "summary.json"]
+    assert files(tmp_path) == [*WRITTEN[:2], "report.png", *WRITTEN[2:]]
+    monkeypatch.setattr(results, "load_recording", lambda path: simulation.recording)
     code, out, _ = run("run", "paper_main", "-o", tmp_path, "--json")
     assert code == 5 and json.loads(out)["status"] == "fell"
 
@@ -183,14 +185,14 @@ def test_long_run_is_refused_before_it_starts_unless_forced(run, simulation, tmp
 def test_unexpected_failure_is_one_line_too(run, simulation, tmp_path, monkeypatch):
     simulation.failure = ZeroDivisionError("a\nb")
     refused(run("run", "paper_main", "-o", tmp_path / "out"), 1, "unexpected ZeroDivisionError: a b")
-    monkeypatch.setenv(cli.TRACEBACK_VARIABLE, "1")
+    monkeypatch.setenv(environment.TRACEBACK, "1")
     assert "Traceback" in run("run", "paper_main", "-o", tmp_path / "out")[2]
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupt_leaves_nothing_and_exits_130(run, simulation, tmp_path, monkeypatch, number):
     before = signal.getsignal(number)
-    monkeypatch.setattr(results, "simulate_run", lambda spec, progress: os.kill(os.getpid(), number))
+    monkeypatch.setattr(results, "simulate_run", lambda *_: os.kill(os.getpid(), number))
     refused(run("run", "paper_main", "-o", tmp_path / "out", "--quiet"), 130, "interrupted")
     assert files(tmp_path) == [] and signal.getsignal(number) is before
 

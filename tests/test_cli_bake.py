@@ -27,7 +27,7 @@ def blender(monkeypatch):
         done["strobe"] = target
         target.write_text("PNG")
 
-    def simulate(spec, progress):
+    def simulate(spec, progress, checkpoints=None):
         progress(1.0, "simulating")
         return synthetic_recording(spec, status=done.get("status", "finished")), {"status": "finished"}
 
@@ -87,7 +87,7 @@ def test_bake_of_a_run_simulates_first(run, blender, tmp_path):
     assert (code, err) == (0, "") and blender["bake"][1].skier.mass == 80.0
     blender["status"] = "fell"
     code, _, err = run("bake", "paper_main", "-o", tmp_path / "b.blend")
-    assert code == 5 and err.count("\n") == 1 and files(tmp_path) == ["a.blend"]
+    assert code == 5 and err.count("\n") == 1 and files(tmp_path) == ["a.blend", "a.task.json"]
 
 
 def test_bake_of_a_missing_recording_leaves_no_folder(run, blender, tmp_path):
@@ -110,6 +110,7 @@ def test_demo_writes_all_it_promises(run, blender, tmp_path):
     assert (code, err) == (0, "") and "Giant slalom: finished" in out
     assert files(tmp_path) == [
         "recording.npz",
+        "recording.task.json",
         "report.png",
         "skier.blend",
         "spec.toml",
@@ -147,7 +148,7 @@ def test_demo_leaves_blender_to_other_processes(run, blender, monkeypatch, tmp_p
     code, out, err = run("demo", "-o", tmp_path, "--json")
     assert (code, err, started) == (0, "", ["bake", "render"]) and json.loads(out)["status"] == "finished"
     assert (tmp_path / "skier.blend").read_text() == (tmp_path / "strobe.png").read_text() == "made apart"
-    assert "bake" not in blender and len(files(tmp_path)) == 6
+    assert "bake" not in blender and len(files(tmp_path)) == 7
 
 
 def test_report_is_drawn_beside_the_recording(run, blender, tmp_path):
@@ -155,7 +156,7 @@ def test_report_is_drawn_beside_the_recording(run, blender, tmp_path):
     code, out, err = run("report", tmp_path)
     assert (code, err) == (0, "") and (tmp_path / "report.png").read_bytes().startswith(b"\x89PNG")
     assert run("report", tmp_path / "recording.npz", "-o", tmp_path / "other.png")[0] == 0
-    assert files(tmp_path) == ["other.png", "recording.npz", "report.png"]
+    assert files(tmp_path) == ["other.png", "other.task.json", "recording.npz", "report.png", "report.task.json"]
 
 
 def test_the_end_of_a_run_is_rendered_when_asked_for(run, blender, monkeypatch, tmp_path):

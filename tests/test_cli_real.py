@@ -52,8 +52,8 @@ def files(folder):
 def test_run_finishes_and_writes_everything(finished):
     folder, code, _, err = finished
     assert (code, err) == (0, "")
-    assert {"recording.npz", "spec.toml", "summary.json"} <= set(files(folder))
-    assert set(files(folder)) <= {"recording.npz", "spec.toml", "summary.json", "report.png"}
+    written = {"recording.npz", "recording.task.json", "spec.toml", "summary.json"}
+    assert written <= set(files(folder)) <= written | {"report.png"}
 
 
 def test_summary_has_the_keys_others_rely_on_and_sane_numbers(finished):
@@ -107,7 +107,7 @@ def test_plan_says_how_fast_and_how_far(tmp_path, capsys):
     assert "leans up to" in capsys.readouterr().out
 
 
-def test_interrupt_while_skiing_leaves_nothing(tmp_path):
+def test_interrupt_while_skiing_leaves_a_checkpoint_and_says_so(tmp_path):
     process = start("run", "paper_main", "-o", tmp_path / "out")
     for line in process.stdout:
         if line.startswith("simulating"):
@@ -115,4 +115,5 @@ def test_interrupt_while_skiing_leaves_nothing(tmp_path):
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert err == "ski_addon: interrupted: no half-written file is left\n" and files(tmp_path) == []
+    assert re.fullmatch(r"ski_addon: interrupted at \d+\.\d\d s of skiing: the same command goes on from there\n", err)
+    assert files(tmp_path / "out") == ["checkpoint.npz"]

@@ -28,7 +28,7 @@ def simulation(monkeypatch):
     monkeypatch.setattr(
         results,
         "simulate_run",
-        lambda spec, progress: (synthetic_recording(spec, duration=1.0), {"status": "finished"}),
+        lambda spec, progress, checkpoints=None: (synthetic_recording(spec, duration=1.0), {"status": "finished"}),
     )
 
 
@@ -56,7 +56,7 @@ def one_line(capsys) -> str:
 @pytest.mark.parametrize("name", NAMES)
 def test_folder_of_any_name_takes_the_results(simulation, tmp_path, capsys, name):
     assert cli.main(["simulate", "paper_main", f"--output={tmp_path / name}"]) == 0
-    assert files(tmp_path / name) == ["recording.npz", "spec.toml", "summary.json"]
+    assert files(tmp_path / name) == ["recording.npz", "recording.task.json", "spec.toml", "summary.json"]
     assert f"results in {tmp_path / name}" in capsys.readouterr().out
 
 
@@ -76,14 +76,14 @@ def test_name_too_long_for_a_file_says_so_at_its_end(tmp_path):
 def test_folder_deep_down_is_made(simulation, tmp_path):
     deep = tmp_path / "/".join(["deep"] * 40)
     assert cli.main(["simulate", "paper_main", "-o", str(deep), "--quiet"]) == 0
-    assert len(files(deep)) == 3
+    assert len(files(deep)) == 4
 
 
 def test_linked_folder_is_written_to(simulation, tmp_path):
     (tmp_path / "real").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "real")
     assert cli.main(["simulate", "paper_main", "-o", str(tmp_path / "link"), "--quiet"]) == 0
-    assert (tmp_path / "link").is_symlink() and len(files(tmp_path / "real")) == 3
+    assert (tmp_path / "link").is_symlink() and len(files(tmp_path / "real")) == 4
 
 
 def test_link_to_nowhere_is_no_folder(simulation, tmp_path, capsys):
@@ -185,7 +185,7 @@ def test_folder_named_by_bytes_that_are_no_text_is_written_to(simulation, tmp_pa
     monkeypatch.setattr(sys, "stdout", screen)
     folder = os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe")
     assert cli.main(["simulate", "paper_main", "-o", folder]) == 0
-    assert len(os.listdir(folder)) == 3 and b"\\udcff\\udcfe" in screen.buffer.getvalue()
+    assert len(os.listdir(folder)) == 4 and b"\\udcff\\udcfe" in screen.buffer.getvalue()
 
 
 def test_quiet_or_json_talk_says_nothing_to_people(capsys):

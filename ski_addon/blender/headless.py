@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .ride import Ride
 
 _LOG = logging.getLogger(__name__)
+FILM_SIZE, FILM_SAMPLES = (1920, 1080), 64
+"""How the frames of a new file are rendered, unless somebody asks for something else."""
 
 
 def require_blender(needed_for: str) -> None:
@@ -61,6 +63,7 @@ def write_file(ride: Ride, spec: RunSpec, target: str | Path, bake: Callable[[bp
     from .bake import scene_rate
     from .camera import build_follow_camera
     from .gates import bake_gates
+    from .pictures import set_render
     from .stage import add_collection, empty_file, stage_ride
 
     scene = empty_file()
@@ -70,6 +73,7 @@ def write_file(ride: Ride, spec: RunSpec, target: str | Path, bake: Callable[[bp
     result = bake(scene)
     bake_gates(stage.gates, stage.swings, scene_rate(scene), spec.bake.frame_start)
     build_follow_camera(result.armature, scene, add_collection(scene, "Camera"))
+    set_render(scene, FILM_SIZE, FILM_SAMPLES)
     scene.frame_set(scene.frame_start)
     look_through_camera()
     with atomic.atomic_path(target) as temporary:
