@@ -16,6 +16,7 @@ _NAMES = (
     "operators",
     "ski_addon.blender.panels",
     "ski_addon.blender.live",
+    "ski_addon.blender.command_line",
 )
 
 

@@ -55,7 +55,7 @@ def _talk(words: Sequence[str]) -> Talk:
     log = next((after for word, after in zip(words, words[1:], strict=False) if word == "--log"), "")
     log = next((word.partition("=")[2] for word in words if word.startswith("--log=")), log)
     openjd = "--openjd" in words or environment.is_on(environment.OPENJD)
-    return Talk(json="--json" in words, openjd=openjd, log=log or os.environ.get(environment.LOG, ""))
+    return Talk(json="--json" in words, openjd=openjd, log_file=log or os.environ.get(environment.LOG, ""))
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> None:

@@ -320,7 +320,7 @@ def _talk(arguments: argparse.Namespace) -> Talk:
     if log:
         atomic.check_appendable(log)
     openjd = arguments.openjd or environment.is_on(environment.OPENJD)
-    return Talk(json=arguments.json, quiet=arguments.quiet, openjd=openjd, log=log)
+    return Talk(json=arguments.json, quiet=arguments.quiet, openjd=openjd, log_file=log)
 
 
 def _read_spec(name: str, arguments: argparse.Namespace) -> RunSpec:

@@ -58,8 +58,8 @@ def at_once(tidy_up: Callable[[], None]) -> Iterator[None]:
         return
     ours, theirs = socket.socketpair()
     theirs.setblocking(False)
-    said = os.dup(2)  # standard error may lead nowhere while foreign code runs
-    watcher = threading.Thread(target=_wait, args=(ours, said, tidy_up), daemon=True)
+    streams = {number: os.dup(number) for number in (1, 2)}  # they may lead nowhere while foreign code runs
+    watcher = threading.Thread(target=_wait, args=(ours, streams, tidy_up), daemon=True)
     watcher.start()
     previous = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
     try:
@@ -70,13 +70,16 @@ def at_once(tidy_up: Callable[[], None]) -> Iterator[None]:
         theirs.close()
         watcher.join()
         ours.close()
-        os.close(said)
+        for copy in streams.values():
+            os.close(copy)
 
 
-def _wait(ours: socket.socket, said: int, tidy_up: Callable[[], None]) -> None:
+def _wait(ours: socket.socket, streams: dict[int, int], tidy_up: Callable[[], None]) -> None:
     """Wait for the number of a signal, or for the other end to be closed."""
     while content := ours.recv(1):
         if content[0] in SIGNALS:
+            for number, copy in streams.items():
+                os.dup2(copy, number)
             tidy_up()
-            os.write(said, b"ski_addon: interrupted: what is finished is kept\n")
+            os.write(2, b"ski_addon: interrupted: what is finished is kept\n")
             os._exit(130)

@@ -192,7 +192,9 @@ def _add_bake(subparsers: _Subparsers) -> None:
         "  %(prog)s giant_slalom -o skier.blend          simulated first",
     )
     parser.add_argument(
-        "source", metavar="RECORDING|DIR|SPEC", help="recording.npz, the folder it is in, or a run to simulate first"
+        "source",
+        metavar="RECORDING|DIR|SPEC",
+        help="recording.npz, the folder of a run or of a crowd, or a run to simulate first",
     )
     _add_changes(parser)
     _add_output(parser, "FILE.blend", "file to write (skier.blend beside the recording if not given)")
@@ -221,15 +223,17 @@ def _add_render(subparsers: _Subparsers) -> None:
         "render the frames of a .blend file, or one picture of a recording",
         "Of a .blend file: each frame as DIR/frame_0001.png and so on. Frames that are there, whole, and made from\n"
         "the same file with the same settings are kept; so a killed task goes on, and workers can share a film.\n"
-        "Of a recording: one picture with the skier at several instants. Needs Blender's Python module bpy, or\n"
-        "Blender.\n\n"
+        "Of a recording: one picture with the skier at several instants; of a crowd, when most are on the slope.\n"
+        "Needs Blender's Python module bpy, or Blender.\n\n"
         "  %(prog)s skier.blend -o frames                all frames, by Cycles on the processor\n"
         "  %(prog)s skier.blend -o frames --frames 1-50 --engine workbench --size 960x540\n"
         "  %(prog)s skier.blend -o frames --samples 128 --motion-blur 0.5 --device OPTIX\n"
         "  %(prog)s out                                  out/strobe.png",
     )
     parser.add_argument(
-        "source", metavar="FILE.blend|RECORDING|DIR", help="what bake wrote; or recording.npz, or the folder it is in"
+        "source",
+        metavar="FILE.blend|RECORDING|DIR",
+        help="what bake wrote; or recording.npz, or the folder of a run or of a crowd",
     )
     _add_output(parser, "DIR|FILE.png", "folder of the frames (frames beside the file), or picture to write")
     frames = parser.add_argument_group("frames of a .blend file")
@@ -347,7 +351,7 @@ def _add_crowd(subparsers: _Subparsers) -> None:
         "times are chosen so that the planned ways stay apart; then everybody is simulated, in parallel processes.\n"
         "Writes member_001.npz and so on, each as soon as it is finished, crowd.json, and crowd.toml with its runs.\n"
         "Stop it with Ctrl+C whenever you like: the same command goes on with those who are missing.\n"
-        "--set takes keys of the crowd (crowd.delay_max, spread.height, ...) and of the runs in it; see docs/crowd.md.\n\n"
+        "--set takes keys of the crowd (crowd.delay_max, spread.height, ...) and of its runs; see docs/crowd.md.\n\n"
         "  %(prog)s pursuit_race -o out/race                    a shipped crowd\n"
         "  %(prog)s medium_carving --count 8 --apart 4 -o out   eight on one run\n"
         "  %(prog)s free_skiing --set spread.offset=15 --set simulation.time_step=0.002 -o out",

@@ -286,10 +286,9 @@ def show_crowd(name: str, folder: Path, target: Path) -> None:
 
             (bake_crowd_file if name == "bake" else render_crowd)(folder, target)
         return
-    with tempfile.TemporaryDirectory(prefix=".ski_addon.", dir=target.parent) as temporary:
-        output = str(Path(temporary, target.name).resolve())
-        apart.run_apart([name, str(folder.resolve()), "--output", output])
-        atomic.move_all(Path(temporary), target.parent)
+    with atomic.staging_folder(target.parent) as stage:
+        apart.run_apart([name, str(folder.resolve()), "--output", str((stage / target.name).resolve())])
+        atomic.move_all(stage, target.parent)
 
 
 def run_blender_command(name: str, recording_path: Path, target: Path, **options: bool) -> None:

@@ -32,13 +32,14 @@ class Talk:
     """How a command talks: with `json` only JSON goes to stdout, with `quiet` only failures are said.
 
     With `openjd`, progress, notes and failures are said as Open Job Description reads them: on stdout, or on stderr
-    where stdout is to hold JSON. `log` is a file that notes and failures are added to.
+    where stdout is to hold JSON. `log_file` is one that notes and failures are added
+    to.
     """
 
     json: bool = False
     quiet: bool = False
     openjd: bool = False
-    log: str = ""
+    log_file: str = ""
 
     def say(self, line: str) -> None:
         """Say one line for a person."""
@@ -76,11 +77,11 @@ class Talk:
         return sys.stderr if self.json else sys.stdout
 
     def _log(self, line: str) -> None:
-        if not self.log:
+        if not self.log_file:
             return
         moment = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
         # a log that cannot be written is no reason to lose the work
-        with contextlib.suppress(OSError), open(self.log, "a", encoding="utf-8") as stream:
+        with contextlib.suppress(OSError), open(self.log_file, "a", encoding="utf-8") as stream:
             stream.write(f"{moment} {line}\n")
 
     def _progress_stream(self) -> TextIO | None:

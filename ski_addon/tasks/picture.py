@@ -15,6 +15,8 @@ SIGNATURE = b"\x89PNG\r\n\x1a\n"
 KEY, PIXELS = "ski_addon:key", "ski_addon:pixels"
 CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
 """Numbers a pixel has, by the kind of picture."""
+TELLING = (b"tEXt", b"zTXt", b"iTXt", b"tIME")
+"""Chunks that tell something about a picture."""
 MOST_BYTES = 1 << 31
 """A picture that unpacks to more than this is not read."""
 
@@ -52,13 +54,15 @@ def read_picture(content: bytes) -> Picture:
 
 
 def marked(content: bytes, key: str) -> bytes:
-    """Return the PNG file with `key` and the digest of its pixels written in; raises `PictureError`."""
-    picture = read_picture(content)
-    texts = b"".join(
-        _chunk(b"tEXt", f"{name}\0{text}".encode("latin-1")) for name, text in ((KEY, key), (PIXELS, picture.pixels))
-    )
-    head = len(SIGNATURE) + 25  # and the header's chunk
-    return content[:head] + texts + content[head:]
+    """Return the PNG file with `key` and the digest of its pixels written in; raises `PictureError`.
+
+    Other texts are taken out: Blender's tell how long rendering took.
+    """
+    texts = {KEY: key, PIXELS: read_picture(content).pixels}
+    head, *rest = _chunks(content)
+    told = [(b"tEXt", f"{name}\0{text}".encode("latin-1")) for name, text in texts.items()]
+    chunks = [head, *told, *(chunk for chunk in rest if chunk[0] not in TELLING)]
+    return SIGNATURE + b"".join(_chunk(*chunk) for chunk in chunks)
 
 
 def flaw(path: Path, key: str) -> str:

@@ -14,6 +14,11 @@ def test_marks_change_no_pixel():
     assert picture.texts == {"ski_addon:key": "abc", "ski_addon:pixels": plain.pixels}
 
 
+def test_texts_that_differ_from_time_to_time_are_taken_out():
+    told = png()[:33] + chunk(b"tEXt", b"render_time\0" + b"00:00.03") + chunk(b"tIME", b"1234567") + png()[33:]
+    assert marked(told, "abc") == marked(png(), "abc")
+
+
 def test_other_pixels_and_other_sizes_have_other_digests():
     digests = {read_picture(png(*shape)).pixels for shape in ((4, 3), (3, 4), (4, 3, 8))}
     assert len(digests) == 3
