@@ -35,7 +35,7 @@ STAGES = (
     ("pushes", "_pushes", "update"),
     ("forward dynamics", "dynamics", "accelerations"),
     ("integrate", "dynamics", "integrate"),
-    ("record", "_log", "add"),
+    ("record", "log", "add"),
 )
 """Stage name, object within the simulation, method.
 

@@ -82,6 +82,7 @@ def report_of(recording_path: Path, target: Path, talk: Talk, *, redo: bool = Fa
     """Draw the report of a recording into `target`, unless that is done or matplotlib is missing."""
     if not results.can_draw(talk):
         return
+    recording = results.load_recording(recording_path)
     inputs = {"recording": digest_file(recording_path)}
     task = Task("report", target, inputs, versions("numpy", "matplotlib"))
     why = "asked for" if redo else task.unfinished((target.name,))
@@ -89,7 +90,7 @@ def report_of(recording_path: Path, target: Path, talk: Talk, *, redo: bool = Fa
         task.say_up_to_date(talk)
         return
     task.say_why(talk, why)
-    results.draw_report(results.load_recording(recording_path), target)
+    results.draw_report(recording, target)
     task.finish((target.name,), talk)
     talk.say(f"wrote {target}")
 
