@@ -43,7 +43,8 @@ def handled_by(handler: Callable[[int, FrameType | None], None]) -> Iterator[Non
         yield
     finally:
         for number, before in previous.items():
-            signal.signal(number, before)
+            # one that was not set by Python, as inside Blender, cannot be had back
+            signal.signal(number, signal.SIG_DFL if before is None else before)
 
 
 @contextlib.contextmanager

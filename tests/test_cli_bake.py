@@ -70,6 +70,19 @@ def test_bake_takes_a_recording_or_its_folder_and_writes_beside_it(run, blender,
     assert blender["bake"][1].name == "Recorded" and (tmp_path / "skier.blend").exists()
 
 
+def test_bake_is_not_done_twice_and_a_file_that_was_touched_is_made_again(run, blender, tmp_path):
+    (tmp_path / "recording.npz").write_text("one")
+    assert "wrote" in run("bake", tmp_path)[1]
+    blender.clear()
+    assert run("bake", tmp_path) == (0, f"{tmp_path / 'skier.blend'}: up to date\n", "") and not blender
+    (tmp_path / "skier.blend").write_text("saved by somebody")
+    assert "skier.blend is not as it was written, made again" in run("bake", tmp_path)[1]
+    (tmp_path / "recording.npz").write_text("two")
+    assert "skier.blend was made from something else, made again" in run("bake", tmp_path)[1]
+    assert "made from something else" in run("bake", tmp_path, "--set", "bake.fps=30")[1]
+    assert "asked for, made again" in run("bake", tmp_path, "--set", "bake.fps=30", "--redo")[1]
+
+
 def test_bake_settings_of_a_recording_can_be_changed_but_not_its_physics(run, blender, tmp_path):
     (tmp_path / "recording.npz").write_text("")
     code, out, _ = run("bake", tmp_path, "--set", "bake.fps=30", "-o", tmp_path / "out" / "a.blend", "--json")
