@@ -55,9 +55,9 @@ def staging_folder(folder: Path) -> Iterator[Path]:
 def remove_left(folder: Path, start: str, end: str) -> None:
     """Remove files and folders in `folder` that a process of this computer which is no more left half-written.
 
-    Their names are `start`, computer, process, and `end`.
+    Their names are `start`, computer, process, and `end`; Blender writes to that name with an @ first.
     """
-    pattern = re.compile(rf"{re.escape(start + _computer())}\.(\d+)(\.\w+)?{re.escape(end)}")
+    pattern = re.compile(rf"{re.escape(start + _computer())}\.(\d+)(\.\w+)?{re.escape(end)}@?")
     with contextlib.suppress(OSError):
         for name in os.listdir(folder):
             found = pattern.fullmatch(name)

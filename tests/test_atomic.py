@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -96,3 +99,34 @@ def test_move_all_onto_a_folder_names_it(tmp_path):
     (stage / "a").write_text("new")
     with pytest.raises(OutputError, match=str(folder / "a")):
         atomic.move_all(stage, folder)
+
+
+def left_by(process: int, name: str, computer: str | None = None) -> str:
+    """The temporary name under which a process writes a file."""
+    path = Path(name)
+    return f".{path.stem}.{computer or atomic._computer()}.{process}.tmp{path.suffix}"
+
+
+def ended_process() -> int:
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+        process.wait()
+    return process.pid
+
+
+def test_what_a_killed_process_left_of_a_file_goes_when_it_is_written_again(tmp_path):
+    gone, kept = ended_process(), [left_by(os.getpid(), "other.blend"), left_by(1, "a.blend"), ".a.notes.tmp.blend"]
+    kept.append(left_by(gone, "a.blend", "elsewhere"))
+    for name in (left_by(gone, "a.blend"), left_by(gone, "a.blend") + "@", *kept):
+        (tmp_path / name).write_text("half")
+    with atomic.atomic_path(tmp_path / "a.blend") as temporary:
+        temporary.write_text("whole")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["a.blend", *kept])
+
+
+def test_folders_that_a_killed_process_collected_files_in_go_too(tmp_path):
+    stage = tmp_path / f"{atomic.STAGE}{atomic._computer()}.{ended_process()}.abc"
+    stage.mkdir()
+    (stage / "recording.npz").write_text("half")
+    with atomic.staging_folder(tmp_path) as own:
+        assert sorted(path for path in tmp_path.iterdir()) == [own]
+    assert list(tmp_path.iterdir()) == []

@@ -37,11 +37,13 @@ class Tally:
     equal: int = 0
     resumed: int = 0
     seconds: list[float] = field(default_factory=list)
+    flaws: list[str] = field(default_factory=list)
 
     def line(self) -> str:
         """The tally in words."""
         moments = ", ".join(f"{second:.1f}" for second in sorted(self.seconds))
-        return f"{self.task}: {self.equal}/{self.kills} equal, {self.resumed} went on midway; killed after {moments} s"
+        said = f"{self.task}: {self.equal}/{self.kills} equal, {self.resumed} went on midway; killed after {moments} s"
+        return "\n  ".join([said, *self.flaws])
 
 
 class Workshop:
@@ -81,7 +83,10 @@ class Workshop:
                 raise RuntimeError(f"{task} after a kill at {moment:.2f} s: {again.stderr}")
             tally.kills += 1
             tally.seconds.append(moment)
-            tally.equal += self._found(task, folder) == self._found(task, self.reference) and not left_over(folder)
+            same, left = self._found(task, folder) == self._found(task, self.reference), left_over(folder)
+            tally.equal += same and not left
+            if left or not same:
+                tally.flaws.append(f"after {moment:.2f} s: {'left ' + ', '.join(left) if left else 'another result'}")
             tally.resumed += "going on from" in again.stdout or _kept(again.stdout)
         return True
 
