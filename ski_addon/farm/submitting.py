@@ -1,0 +1,158 @@
+"""From the options of `submit` to a job, and from a job to the files of its bundle."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ..errors import SpecError
+from ..spec import RunSpec, estimate
+from ..spec.presets import find_ground
+from ..talk import json_text
+from . import bundle, flamenco, openjd_template
+from .frame_chunks import FRAME_MAX, Span, read_chunk, read_frames, split_frames
+from .job import FarmJob
+from .variations import list_changes, read_variations
+
+WORKERS: Mapping[str, str] = MappingProxyType({"openjd": "python", "flamenco": "blender"})
+"""Farms that bundles are written for -> what their workers usually have."""
+CORES_MAX, MEMORY_MAX = 1024, 65536
+_OTHER_LETTERS = re.compile(r"[^A-Za-z0-9._-]+")
+
+
+@dataclass(frozen=True)
+class SubmitOptions:
+    """What `submit` was told, as it was written; see its `--help`."""
+
+    engine: str = "openjd"
+    frames: str | None = None
+    chunk: str = "10"
+    vary: Sequence[str] = ()
+    pairs: bool = False
+    chunking: bool = False
+    workers: str | None = None
+    cores: str | None = None
+    memory: str | None = None
+
+
+def make_job(
+    spec: RunSpec,
+    options: SubmitOptions,
+    plan_seconds: Callable[[RunSpec], float],
+    progress: Callable[[float, str], Any],
+) -> FarmJob:
+    """Return the job for a run; raises `SkiAddonError` for an option that is wrong.
+
+    Without `options.frames` every run is planned by `plan_seconds`, which returns how long it lasts [s], and all frames
+    of the longest are rendered.
+    """
+    _check_engine(options)
+    variations = read_variations(options.vary, spec)
+    runs = [spec.with_overrides(changes) for changes in list_changes(variations, pairs=options.pairs)]
+    chunk = read_chunk(options.chunk)
+    ground = _ground(runs)
+    frames = (
+        read_frames(options.frames) if options.frames is not None else _planned_frames(runs, plan_seconds, progress)
+    )
+    split_frames(frames, chunk)  # says so if these are too many
+    job = FarmJob(
+        name=" ".join(spec.name.split()) or "Ski run",
+        document="",
+        frames=frames,
+        chunk=chunk,
+        ground=ground,
+        ground_name=_plain_name(ground) if ground else "",
+        variations=variations,
+        pairs=options.pairs,
+        chunking=options.chunking,
+        workers=options.workers or WORKERS[options.engine],
+        run_seconds=max(estimate(run).wall_seconds for run in runs),
+        fps=spec.bake.fps,
+        cores=_whole("--cores", options.cores, CORES_MAX),
+        memory=_whole("--memory", options.memory, MEMORY_MAX),
+    )
+    return dataclasses.replace(job, document=_document(spec, job))
+
+
+def write_job(job: FarmJob, folder: Path, engine: str) -> bool:
+    """Write the bundle of a job into `folder`; returns whether it was not there yet. Raises as `write_bundle`."""
+    inputs = f"{openjd_template.INPUT}/"
+    texts = {f"{inputs}{openjd_template.DOCUMENT}": job.document}
+    if engine == "openjd":
+        texts["template.json"] = json_text(openjd_template.job_template(job))
+        texts["parameter_values.json"] = json_text(openjd_template.parameter_values(job))
+    else:
+        texts["job.json"] = json_text(flamenco.submitted_job(job, folder.resolve()))
+        texts[flamenco.SCRIPT] = flamenco.read_script()
+    copies = {f"{inputs}{job.ground_path}": job.ground} if job.ground else {}
+    return bundle.write_bundle(folder, texts, copies, kept=openjd_template.OUTPUT)
+
+
+def _check_engine(options: SubmitOptions) -> None:
+    only_openjd: Mapping[str, object] = {
+        "--vary": options.vary,
+        "--chunking": options.chunking,
+        "--cores": options.cores,
+        "--memory": options.memory,
+    }
+    for name, value in only_openjd.items():
+        if options.engine != "openjd" and value:
+            raise SpecError(name, problem=f"is not for {options.engine}", hint="leave it out, or use --engine openjd")
+    if options.pairs and len(options.vary) < 2:
+        raise SpecError("--pairs", problem="needs two keys or more", hint="give --vary twice or more, or leave it out")
+
+
+def _planned_frames(
+    runs: Sequence[RunSpec], plan_seconds: Callable[[RunSpec], float], progress: Callable[[float, str], Any]
+) -> tuple[Span, ...]:
+    """Return the frames from the first start to the last end of the planned runs."""
+    spans = []
+    for k, run in enumerate(runs):
+        progress(k / len(runs), "planning")
+        first = run.bake.frame_start
+        spans.append((first, first + int(plan_seconds(run) * run.bake.fps)))
+    first, last = min(span[0] for span in spans), max(span[1] for span in spans)
+    if first < 0 or last > FRAME_MAX:
+        hint = "set bake.frame_start to 1, or name the frames to render with --frames"
+        raise SpecError("bake.frame_start", first, f"frames of 0..{FRAME_MAX} on a farm", hint)
+    return ((first, last),)
+
+
+def _ground(runs: Sequence[RunSpec]) -> Path | None:
+    """Return the file of heights that the runs need; shipped grounds are on every worker."""
+    names = {run.slope.grid_file for run in runs if run.slope.kind == "grid" and run.slope.grid_file}
+    if not names:
+        return None
+    name = names.pop()  # a text, which is not varied
+    path = find_ground(name)
+    if str(path) != name:
+        return None
+    bundle.check_plain(path)
+    return path
+
+
+def _plain_name(path: Path) -> str:
+    """Return a file name that means nothing to a template, a shell or another system."""
+    stem = _OTHER_LETTERS.sub("_", path.stem).strip(".") or "heights"
+    return stem[:60] + path.suffix.lower()
+
+
+def _document(spec: RunSpec, job: FarmJob) -> str:
+    """Return the run document for the bundle, with its ground beside it."""
+    unused = "" if spec.slope.kind != "grid" and not job.ground else spec.slope.grid_file
+    slope = dataclasses.replace(spec.slope, grid_file=job.ground_path or unused)
+    return dataclasses.replace(spec, slope=slope).to_toml()
+
+
+def _whole(name: str, written: str | None, most: int) -> int | None:
+    if written is None:
+        return None
+    value = int(written) if re.fullmatch("[0-9]{1,9}", written) else 0
+    if not 1 <= value <= most:
+        raise SpecError(name, written, f"1..{most}", "give a whole number in that range")
+    return value
