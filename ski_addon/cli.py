@@ -315,6 +315,13 @@ def _add_submit(subparsers: _Subparsers) -> None:
     )
     parser.add_argument("--chunk", metavar="COUNT", default="10", help="frames that one task renders (10)")
     parser.add_argument(
+        "--render",
+        metavar="OPTION=VALUE",
+        action="append",
+        default=[],
+        help="option of render: engine, device, samples, size, motion-blur or denoise; repeatable",
+    )
+    parser.add_argument(
         "--vary",
         metavar="KEY=VALUE,...",
         action="append",

@@ -22,6 +22,16 @@ const JOB_TYPE = {
         { key: "output", type: "string", subtype: "dir_path", required: true, editable: false,
           eval: "str(Path(abspath(settings.output_root), jobname))",
           description: "Folder for the recording, the .blend and the frames. The same job sent again goes on there" },
+        { key: "engine", type: "string", choices: ["cycles", "workbench"], default: "cycles", visible: "submission",
+          label: "Render Engine", description: "What renders; workbench is quick and plain" },
+        { key: "device", type: "string", choices: ["CPU", "CUDA", "OPTIX", "HIP", "METAL", "ONEAPI"], default: "CPU",
+          visible: "submission", label: "Render Device", description: "On what Cycles renders" },
+        { key: "samples", type: "int32", default: 0, propargs: { min: 0 }, visible: "submission",
+          description: "Samples a pixel; 0: as in the baked file" },
+        { key: "size", type: "string", default: "", visible: "submission",
+          eval: "f'{C.scene.render.resolution_x}x{C.scene.render.resolution_y}'",
+          evalInfo: { showLinkButton: true, description: "Resolution of the scene" },
+          description: "Size of the pictures in pixels, for instance 1920x1080; nothing: as in the baked file" },
         { key: "workers", type: "string", choices: ["blender", "python"], default: "blender", visible: "submission",
           label: "Workers Have",
           description: "blender: Blender with the extension Ski Addon; python: Python with ski_addon and bpy" },
@@ -83,6 +93,9 @@ function checkSettings(settings) {
     }
     if (!["blender", "python"].includes(settings.workers)) {
         throw `workers = "${settings.workers}" is neither "blender" nor "python"`;
+    }
+    if (settings.size && !/^\d+x\d+$/.test(settings.size)) {
+        throw `size = "${settings.size}" is not a size in pixels, for instance 1920x1080`;
     }
     if (settings.video && !(settings.fps > 0)) {
         throw `fps = ${settings.fps} is not a frame rate: give frames per second, or set video to false`;
@@ -146,7 +159,19 @@ function bakeArguments(settings) {
 
 function renderArguments(settings, [first, last]) {
     const frames = path.join(settings.output, "frames");
-    return ["render", path.join(settings.output, "skier.blend"), "--output", frames, "--frames", `${first}-${last}`];
+    return ["render", path.join(settings.output, "skier.blend"), "--output", frames, "--frames", `${first}-${last}`,
+        ...renderOptions(settings)];
+}
+
+function renderOptions(settings) {
+    const options = ["--engine", settings.engine];
+    if (settings.engine === "cycles") {
+        options.push("--device", settings.device);
+    }
+    if (settings.samples > 0) {
+        options.push("--samples", `${settings.samples}`);
+    }
+    return settings.size ? options.concat("--size", settings.size) : options;
 }
 
 function videoTask(settings) {

@@ -18,6 +18,8 @@ SCRIPT = "ski_simulate_bake_render.js"
 """File name of the job type."""
 JOB_TYPE = "ski-simulate-bake-render"
 """Name of the job type: the Manager makes it of the file name."""
+RENDER_OPTIONS = ("engine", "device", "samples", "size")
+"""Options of `render` that are settings of the job type."""
 
 
 def read_script() -> str:
@@ -36,6 +38,10 @@ def submitted_job(job: FarmJob, folder: Path) -> dict[str, Any]:
         "frames": show_frames(job.frames),
         "chunk_size": job.chunk,
         "output": str(folder / OUTPUT),
+        "engine": job.render.get("engine", "cycles"),
+        "device": job.render.get("device", "CPU"),
+        "samples": int(job.render.get("samples", 0)),
+        "size": job.render.get("size", ""),
         "workers": job.workers,
         "python": "python",
         "video": True,

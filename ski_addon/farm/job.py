@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
@@ -33,9 +33,10 @@ class FarmJob:
     """One run, or the runs that `variations` make of it, simulated, baked and rendered.
 
     `document` is the run document as TOML, whose ground is `ground_name` in the folder `terrain` beside it, a copy of
-    the file `ground` (both empty for a ground without a file). `frames` are rendered in chunks of `chunk`. With
-    `pairs` the variations go together, value by value. `workers` is a key of `LAUNCHES`. `run_seconds` is the
-    estimated time of the longest simulation [s]. `cores` and `memory` [GB] are what a worker must have at least.
+    the file `ground` (both empty for a ground without a file). `frames` are rendered in chunks of `chunk`, with the
+    options `render`. With `pairs` the variations go together, value by value. `workers` is a key of `LAUNCHES`.
+    `run_seconds` is the estimated time of the longest simulation [s]. `cores` and `memory` [GB] are what a worker must
+    have at least.
     """
 
     name: str
@@ -44,6 +45,7 @@ class FarmJob:
     chunk: int
     ground: Path | None = None
     ground_name: str = ""
+    render: Mapping[str, str] = field(default_factory=dict)
     variations: tuple[Variation, ...] = ()
     pairs: bool = False
     chunking: bool = False

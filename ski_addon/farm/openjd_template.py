@@ -11,6 +11,7 @@ from typing import Any
 
 from .frame_chunks import show_frames, show_span, split_frames
 from .job import BAKE_SECONDS, LAUNCHES, FarmJob
+from .render_options import render_arguments
 
 INPUT, OUTPUT = "input", "output"
 """Folders of a bundle: what the tasks read, and what they write."""
@@ -85,7 +86,7 @@ def _bake_step(job: FarmJob) -> dict[str, Any]:
 
 def _render_step(job: FarmJob) -> dict[str, Any]:
     arguments = ["render", f"{_run_folder(job)}/skier.blend", "--output", f"{_run_folder(job)}/frames"]
-    arguments += ["--frames", _task_value("Frames")]
+    arguments += ["--frames", _task_value("Frames"), *render_arguments(job.render)]
     return _step(job, "Render", arguments, job.render_seconds, after="Bake", frames=_frames(job))
 
 

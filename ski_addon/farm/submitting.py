@@ -17,6 +17,7 @@ from ..talk import json_text
 from . import bundle, flamenco, openjd_template
 from .frame_chunks import FRAME_MAX, Span, read_chunk, read_frames, split_frames
 from .job import FarmJob
+from .render_options import read_render_options
 from .variations import list_changes, read_variations
 
 WORKERS: Mapping[str, str] = MappingProxyType({"openjd": "python", "flamenco": "blender"})
@@ -32,6 +33,7 @@ class SubmitOptions:
     engine: str = "openjd"
     frames: str | None = None
     chunk: str = "10"
+    render: Sequence[str] = ()
     vary: Sequence[str] = ()
     pairs: bool = False
     chunking: bool = False
@@ -51,7 +53,8 @@ def make_job(
     Without `options.frames` every run is planned by `plan_seconds`, which returns how long it lasts [s], and all frames
     of the longest are rendered.
     """
-    _check_engine(options)
+    render = read_render_options(options.render)
+    _check_engine(options, render)
     variations = read_variations(options.vary, spec)
     runs = [spec.with_overrides(changes) for changes in list_changes(variations, pairs=options.pairs)]
     chunk = read_chunk(options.chunk)
@@ -65,6 +68,7 @@ def make_job(
         document="",
         frames=frames,
         chunk=chunk,
+        render=render,
         ground=ground,
         ground_name=_plain_name(ground) if ground else "",
         variations=variations,
@@ -93,12 +97,13 @@ def write_job(job: FarmJob, folder: Path, engine: str) -> bool:
     return bundle.write_bundle(folder, texts, copies, kept=openjd_template.OUTPUT)
 
 
-def _check_engine(options: SubmitOptions) -> None:
+def _check_engine(options: SubmitOptions, render: Mapping[str, str]) -> None:
     only_openjd: Mapping[str, object] = {
         "--vary": options.vary,
         "--chunking": options.chunking,
         "--cores": options.cores,
         "--memory": options.memory,
+        **{f"--render {name}": name not in flamenco.RENDER_OPTIONS for name in render},
     }
     for name, value in only_openjd.items():
         if options.engine != "openjd" and value:

@@ -43,6 +43,10 @@ def commands_of(task):
     return [(command["parameters"]["exe"], command["parameters"]["args"]) for command in task["commands"]]
 
 
+def frames_of(arguments):
+    return arguments[arguments.index("--frames") + 1]
+
+
 def test_tasks_come_in_order_and_wait_for_what_they_read(compile_job):
     tasks = by_name(compile_job())
     renders = ["render-1-10", "render-11-20", "render-21-25"]
@@ -60,6 +64,7 @@ def test_workers_with_blender_run_its_command(compile_job):
     assert commands_of(tasks["simulate"]) == [("{blender}", [*ski, "simulate", "/shots/run.toml", "--output", RUN])]
     assert commands_of(tasks["bake"]) == [("{blender}", [*ski, "bake", RUN, "--output", BLEND])]
     render = [*ski, "render", BLEND, "--output", FRAMES, "--frames", "11-20"]
+    render += ["--engine", "cycles", "--device", "CPU"]
     assert commands_of(tasks["render-11-20"]) == [("{blender}", render)]
     assert {command["name"] for name in tasks if name != "video" for command in tasks[name]["commands"]} == {"exec"}
 
@@ -85,6 +90,14 @@ def test_ground_is_given_where_it_is_read(compile_job):
     assert [commands_of(tasks[name])[0][1][-2:] for name in ("simulate", "bake")] == [ground, ground]
 
 
+def test_frames_are_rendered_as_the_settings_say(compile_job):
+    changes = {"engine": "workbench", "device": "OPTIX", "samples": 16, "size": "960x540", "frames": "1"}
+    ((_, arguments),) = commands_of(by_name(compile_job(**changes))["render-1"])
+    assert arguments[arguments.index("--engine") :] == [
+        *("--engine", "workbench", "--samples", "16", "--size", "960x540")
+    ]
+
+
 def test_place_of_the_output_may_name_the_time(compile_job):
     job = compile_job(output="/shots/{timestamp}")
     assert job["settings"]["output"] == "/shots/2026-01-02_030405"
@@ -107,7 +120,9 @@ def test_place_of_the_output_may_name_the_time(compile_job):
 )
 def test_chunks_become_ranges_of_render(compile_job, frames, size, chunks):
     tasks = by_name(compile_job(frames=frames, chunk_size=size, video=False))
-    found = {name: [args[-1] for _, args in commands_of(task)] for name, task in tasks.items() if "render" in name}
+    found = {
+        name: [frames_of(args) for _, args in commands_of(task)] for name, task in tasks.items() if "render" in name
+    }
     assert found == chunks
 
 
@@ -126,6 +141,7 @@ def test_chunks_become_ranges_of_render(compile_job, frames, size, chunks):
         ({"output": None}, "output is missing"),
         ({"chunk_size": 0}, "chunk_size = 0 is not a whole number of 1 or more"),
         ({"chunk_size": 2.5}, "chunk_size = 2.5 is not"),
+        ({"size": "large"}, 'size = "large" is not a size in pixels'),
         ({"workers": "perl"}, 'workers = "perl" is neither'),
         ({"fps": 0}, "fps = 0 is not a frame rate"),
     ],
@@ -148,7 +164,7 @@ def test_settings_are_what_blender_and_manager_know(engine):
         if "choices" in setting:
             assert setting["default"] in setting["choices"]
     evaluated = {setting["key"] for setting in job_type["settings"] if "eval" in setting}
-    assert evaluated == {"frames", "output", "fps"}
+    assert evaluated == {"frames", "output", "size", "fps"}
 
 
 def test_job_for_the_api_is_one_the_script_takes(engine, tmp_path):

@@ -158,6 +158,15 @@ def test_chunking_is_an_extension_that_must_be_asked_for(submit, tmp_path):
     assert (defaults["Frames"], defaults["ChunkSize"]) == ("1-20", 8)
 
 
+def test_options_of_render_are_passed_on(submit, tmp_path):
+    given = {"engine": "workbench", "size": "96x54", "motion-blur": "0.5", "denoise": "false"}
+    options = [word for name, value in given.items() for word in ("--render", f"{name}={value}")]
+    submit("paper_main", "-o", tmp_path, "--frames", "1", *options)
+    arguments = run_of(tmp_path, "Render")["args"]
+    wanted = ["--engine", "workbench", "--size", "96x54", "--motion-blur", "0.5", "--no-denoise"]
+    assert arguments[arguments.index("--engine") :] == wanted
+
+
 def test_needs_of_workers_are_asked_for(submit, tmp_path):
     submit("paper_main", "-o", tmp_path, "--cores", "4", "--memory", "16", "--workers", "blender")
     amounts = step(tmp_path, "Bake")["hostRequirements"]["amounts"]
@@ -175,13 +184,19 @@ def test_long_runs_have_longer_to_simulate(submit, tmp_path):
 
 def test_flamenco_bundle_has_job_type_and_job(submit, tmp_path, hill):
     bundle = tmp_path / "bundle"
-    assert submit(hill, "-o", bundle, "--engine", "flamenco", "--frames", "1-20,40", "--chunk", "7")[0] == 0
+    assert (
+        submit(
+            hill, "-o", bundle, "--engine", "flamenco", "--frames", "1-20,40", "--chunk", "7", "--render", "size=96x54"
+        )[0]
+        == 0
+    )
     assert (bundle / flamenco.SCRIPT).read_text(encoding="utf-8") == flamenco.read_script()
     job = json.loads((bundle / "job.json").read_text(encoding="utf-8"))
     assert job["type"] == "ski-simulate-bake-render"
     settings = job["settings"]
     assert settings["spec"] == str(bundle / "input" / "spec.toml")
     assert (bundle / "input" / "terrain" / os.path.basename(settings["ground"])).is_file()
+    assert (settings["engine"], settings["size"]) == ("cycles", "96x54")
     assert (settings["frames"], settings["chunk_size"], settings["workers"]) == ("1-20,40", 7, "blender")
 
 
@@ -212,6 +227,12 @@ def test_summary_for_machines(submit, tmp_path):
             "--vary makes 300 runs, allowed are 256",
         ),
         (["--vary", "course.radius=10"], 2, "course.radius is not a key of a run"),
+        (["--render", "engin=cycles"], 2, "--render engin is no option of render: did you mean engine?"),
+        (["--render", "size"], 2, '--render size = "" is not one of its values: give pixels'),
+        (["--render", "size=10x"], 2, '--render size = "10x" is not one of its values'),
+        (["--render", "samples=0"], 2, "give a whole number"),
+        (["--render", "samples=4", "--render", "samples=5"], 2, "--render samples is given twice"),
+        (["--engine", "flamenco", "--render", "denoise=true"], 2, "--render denoise is not for flamenco"),
         (["--pairs"], 2, "--pairs needs two keys or more"),
         (["--cores", "0"], 2, '--cores = "0" is outside 1..1024'),
         (["--memory", "lots"], 2, '--memory = "lots" is outside'),
