@@ -329,6 +329,7 @@ def _add_submit(subparsers: _Subparsers) -> None:
         help="make a run for each value of a key, and of several keys for each combination; repeatable",
     )
     for name, text in (
+        ("crowd", "SPEC is a crowd document or a preset in presets/crowds, as of the command crowd"),
         ("pairs", "take the values of all --vary together: the first ones, the second ones and so on"),
         ("chunking", "let the farm make the chunks, by Open Job Description's extension TASK_CHUNKING"),
         ("run", "run the bundle here, by openjd (pip install openjd-cli)"),

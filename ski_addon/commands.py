@@ -189,17 +189,25 @@ def crowd_command(arguments: argparse.Namespace) -> int:
 
 
 def submit_command(arguments: argparse.Namespace) -> int:
-    """`submit`: run -> bundle for a render farm, and if asked run it here."""
+    """`submit`: run or crowd -> bundle for a render farm, and if asked run it here."""
+    from .crowd import find_crowd
     from .farm import local_run
+    from .farm.subjects import crowd_subject, run_subject
     from .farm.submitting import SubmitOptions, make_job, write_job
 
-    talk, spec = _talk(arguments), _read_spec(arguments.spec, arguments)
+    talk = _talk(arguments)
+    if arguments.crowd:
+        parts = [find_document(part, PART_KINDS) for part in arguments.parts]
+        subject = crowd_subject(find_crowd(arguments.spec), parts, _changes(arguments))
+    else:
+        subject = run_subject(_read_spec(arguments.spec, arguments))
     given = {info.name: getattr(arguments, info.name) for info in dataclasses.fields(SubmitOptions)}
     if arguments.run:
         local_run.check_can_run(arguments.engine)
-    _check_size(spec, arguments, talk)
+    for run in subject.runs:
+        _check_size(run, arguments)
     with talk.progress() as progress:
-        job = make_job(spec, SubmitOptions(**given), results.plan_seconds, progress)
+        job = make_job(subject, SubmitOptions(**given), results.plan_seconds, progress)
     folder = Path(arguments.output)
     fresh = write_job(job, folder, arguments.engine)
     talk.say(f"{'wrote' if fresh else 'unchanged:'} {folder}, {job.described}")

@@ -9,6 +9,8 @@ const JOB_TYPE = {
     settings: [
         { key: "spec", type: "string", subtype: "file_path", required: true, label: "Run Document",
           description: "Run document (.toml) on the shared storage, or the name of a preset" },
+        { key: "command", type: "string", choices: ["simulate", "crowd"], default: "simulate", visible: "submission",
+          label: "What It Is", description: "simulate: the document is a run; crowd: it is a crowd" },
         { key: "ground", type: "string", subtype: "file_path", required: false, default: "", label: "Heights",
           description: "File of heights that the run document names, where workers see it under another path" },
         { key: "frames", type: "string", required: true,
@@ -149,7 +151,7 @@ function skiTask(settings, name, taskType, commands) {
 
 function simulateArguments(settings) {
     const ground = settings.ground ? ["--set", `slope.grid_file=${settings.ground}`] : [];
-    return ["simulate", settings.spec, "--output", path.join(settings.output, "run"), ...ground];
+    return [settings.command, settings.spec, "--output", path.join(settings.output, "run"), ...ground];
 }
 
 function bakeArguments(settings) {

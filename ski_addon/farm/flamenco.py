@@ -12,7 +12,7 @@ from typing import Any
 from ..spec.presets import preset_folder
 from .frame_chunks import show_frames
 from .job import FarmJob
-from .openjd_template import DOCUMENT, INPUT, OUTPUT
+from .openjd_template import INPUT, OUTPUT
 
 SCRIPT = "ski_simulate_bake_render.js"
 """File name of the job type."""
@@ -33,7 +33,8 @@ def submitted_job(job: FarmJob, folder: Path) -> dict[str, Any]:
     Flamenco knows absolute paths only; its two-way variables map them between systems.
     """
     settings: dict[str, Any] = {
-        "spec": str(folder / INPUT / DOCUMENT),
+        "command": job.command,
+        "spec": str(folder / INPUT / job.document),
         "ground": str(folder / INPUT / job.ground_path) if job.ground else "",
         "frames": show_frames(job.frames),
         "chunk_size": job.chunk,

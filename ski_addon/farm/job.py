@@ -11,6 +11,8 @@ from types import MappingProxyType
 from .frame_chunks import Span, show_frames, split_frames
 from .variations import Variation, list_changes
 
+TERRAIN = "terrain"
+"""Folder of the heights, beside the document that names them."""
 SIMULATE_SECONDS_LEAST = 900
 """A simulation is not stopped before that [s], however short the run: the first start of a worker is slow."""
 SLOWNESS = 10.0
@@ -30,19 +32,21 @@ LAUNCHES: Mapping[str, tuple[str, str, tuple[str, ...]]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class FarmJob:
-    """One run, or the runs that `variations` make of it, simulated, baked and rendered.
+    """One run or crowd, or those that `variations` make of it, simulated, baked and rendered.
 
-    `document` is the run document as TOML, whose ground is `ground_name` in the folder `terrain` beside it, a copy of
-    the file `ground` (both empty for a ground without a file). `frames` are rendered in chunks of `chunk`, with the
-    options `render`. With `pairs` the variations go together, value by value. `workers` is a key of `LAUNCHES`.
-    `run_seconds` is the estimated time of the longest simulation [s]. `cores` and `memory` [GB] are what a worker must
-    have at least.
+    `command` simulates `document`, one of `documents` (TOML by file name), whose ground is `ground_name` in the folder
+    `terrain` beside it, a copy of the file `ground` (both empty for a ground without a file). `frames` are rendered in
+    chunks of `chunk`, with the options `render`. With `pairs` the variations go together, value by value. `workers` is
+    a key of `LAUNCHES`. `run_seconds` is the estimated time of the longest simulation [s]. `cores` and `memory` [GB]
+    are what a worker must have at least.
     """
 
     name: str
-    document: str
+    documents: Mapping[str, str]
     frames: tuple[Span, ...]
     chunk: int
+    command: str = "simulate"
+    document: str = "spec.toml"
     ground: Path | None = None
     ground_name: str = ""
     render: Mapping[str, str] = field(default_factory=dict)
@@ -58,7 +62,7 @@ class FarmJob:
     @property
     def ground_path(self) -> str:
         """Path of the ground beside the document, with forward slashes, or ""."""
-        return f"terrain/{self.ground_name}" if self.ground else ""
+        return f"{TERRAIN}/{self.ground_name}" if self.ground else ""
 
     @property
     def run_count(self) -> int:

@@ -15,7 +15,6 @@ from .render_options import render_arguments
 
 INPUT, OUTPUT = "input", "output"
 """Folders of a bundle: what the tasks read, and what they write."""
-DOCUMENT = "spec.toml"
 NOTIFY_SECONDS = 60
 """Time between asking a task to stop and killing it [s]; within it a task leaves its files whole."""
 ENVIRONMENT = {
@@ -71,7 +70,7 @@ def _folder(name: str, default: str, flow: str, description: str) -> dict[str, A
 
 
 def _simulate_step(job: FarmJob) -> dict[str, Any]:
-    arguments = ["simulate", f"{{{{Param.Input}}}}/{DOCUMENT}", "--output", f"{_run_folder(job)}/run"]
+    arguments = [job.command, f"{{{{Param.Input}}}}/{job.document}", "--output", f"{_run_folder(job)}/run"]
     for variation in job.variations:
         arguments += ["--set", f"{variation.key}={_task_value(variation.parameter)}"]
     return _step(job, "Simulate", arguments, job.simulate_seconds)

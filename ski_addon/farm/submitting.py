@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,19 +10,18 @@ from types import MappingProxyType
 from typing import Any
 
 from ..errors import SpecError
-from ..spec import RunSpec, estimate
-from ..spec.presets import find_ground
+from ..spec import RunSpec
 from ..talk import json_text
 from . import bundle, flamenco, openjd_template
 from .frame_chunks import FRAME_MAX, Span, read_chunk, read_frames, split_frames
-from .job import FarmJob
+from .job import TERRAIN, FarmJob
 from .render_options import read_render_options
+from .subjects import Subject, find_heights, plain_name
 from .variations import list_changes, read_variations
 
 WORKERS: Mapping[str, str] = MappingProxyType({"openjd": "python", "flamenco": "blender"})
 """Farms that bundles are written for -> what their workers usually have."""
 CORES_MAX, MEMORY_MAX = 1024, 65536
-_OTHER_LETTERS = re.compile(r"[^A-Za-z0-9._-]+")
 
 
 @dataclass(frozen=True)
@@ -43,50 +41,51 @@ class SubmitOptions:
 
 
 def make_job(
-    spec: RunSpec,
+    subject: Subject,
     options: SubmitOptions,
     plan_seconds: Callable[[RunSpec], float],
     progress: Callable[[float, str], Any],
 ) -> FarmJob:
-    """Return the job for a run; raises `SkiAddonError` for an option that is wrong.
+    """Return the job for a run or a crowd; raises `SkiAddonError` for an option that is wrong.
 
     Without `options.frames` every run is planned by `plan_seconds`, which returns how long it lasts [s], and all frames
     of the longest are rendered.
     """
     render = read_render_options(options.render)
     _check_engine(options, render)
-    variations = read_variations(options.vary, spec)
-    runs = [spec.with_overrides(changes) for changes in list_changes(variations, pairs=options.pairs)]
+    variations = read_variations(options.vary, subject)
+    varied = [subject.changed(changes) for changes in list_changes(variations, pairs=options.pairs)]
     chunk = read_chunk(options.chunk)
-    ground = _ground(runs)
-    frames = (
-        read_frames(options.frames) if options.frames is not None else _planned_frames(runs, plan_seconds, progress)
-    )
+    ground = find_heights([run.slope for one in varied for run in one.runs])
+    ground_name = plain_name(ground) if ground else ""
+    documents = subject.documents(f"{TERRAIN}/{ground_name}" if ground else "")
+    frames = _planned_frames(varied, plan_seconds, progress) if options.frames is None else read_frames(options.frames)
     split_frames(frames, chunk)  # says so if these are too many
-    job = FarmJob(
-        name=" ".join(spec.name.split()) or "Ski run",
-        document="",
+    return FarmJob(
+        name=" ".join(subject.name.split()) or "Ski run",
+        command=subject.command,
+        document=subject.document,
+        documents=documents,
         frames=frames,
         chunk=chunk,
         render=render,
         ground=ground,
-        ground_name=_plain_name(ground) if ground else "",
+        ground_name=ground_name,
         variations=variations,
         pairs=options.pairs,
         chunking=options.chunking,
         workers=options.workers or WORKERS[options.engine],
-        run_seconds=max(estimate(run).wall_seconds for run in runs),
-        fps=spec.bake.fps,
+        run_seconds=max(one.wall_seconds for one in varied),
+        fps=subject.fps,
         cores=_whole("--cores", options.cores, CORES_MAX),
         memory=_whole("--memory", options.memory, MEMORY_MAX),
     )
-    return dataclasses.replace(job, document=_document(spec, job))
 
 
 def write_job(job: FarmJob, folder: Path, engine: str) -> bool:
     """Write the bundle of a job into `folder`; returns whether it was not there yet. Raises as `write_bundle`."""
     inputs = f"{openjd_template.INPUT}/"
-    texts = {f"{inputs}{openjd_template.DOCUMENT}": job.document}
+    texts = {f"{inputs}{name}": text for name, text in job.documents.items()}
     if engine == "openjd":
         texts["template.json"] = json_text(openjd_template.job_template(job))
         texts["parameter_values.json"] = json_text(openjd_template.parameter_values(job))
@@ -113,9 +112,13 @@ def _check_engine(options: SubmitOptions, render: Mapping[str, str]) -> None:
 
 
 def _planned_frames(
-    runs: Sequence[RunSpec], plan_seconds: Callable[[RunSpec], float], progress: Callable[[float, str], Any]
+    varied: Sequence[Subject], plan_seconds: Callable[[RunSpec], float], progress: Callable[[float, str], Any]
 ) -> tuple[Span, ...]:
     """Return the frames from the first start to the last end of the planned runs."""
+    if varied[0].command != "simulate":
+        hint = "name the frames to render, for instance --frames 1-240"
+        raise SpecError("--frames", problem="is needed for a crowd, whose length is known when it was skied", hint=hint)
+    runs = [run for one in varied for run in one.runs]
     spans = []
     for k, run in enumerate(runs):
         progress(k / len(runs), "planning")
@@ -126,32 +129,6 @@ def _planned_frames(
         hint = "set bake.frame_start to 1, or name the frames to render with --frames"
         raise SpecError("bake.frame_start", first, f"frames of 0..{FRAME_MAX} on a farm", hint)
     return ((first, last),)
-
-
-def _ground(runs: Sequence[RunSpec]) -> Path | None:
-    """Return the file of heights that the runs need; shipped grounds are on every worker."""
-    names = {run.slope.grid_file for run in runs if run.slope.kind == "grid" and run.slope.grid_file}
-    if not names:
-        return None
-    name = names.pop()  # a text, which is not varied
-    path = find_ground(name)
-    if str(path) != name:
-        return None
-    bundle.check_plain(path)
-    return path
-
-
-def _plain_name(path: Path) -> str:
-    """Return a file name that means nothing to a template, a shell or another system."""
-    stem = _OTHER_LETTERS.sub("_", path.stem).strip(".") or "heights"
-    return stem[:60] + path.suffix.lower()
-
-
-def _document(spec: RunSpec, job: FarmJob) -> str:
-    """Return the run document for the bundle, with its ground beside it."""
-    unused = "" if spec.slope.kind != "grid" and not job.ground else spec.slope.grid_file
-    slope = dataclasses.replace(spec.slope, grid_file=job.ground_path or unused)
-    return dataclasses.replace(spec, slope=slope).to_toml()
 
 
 def _whole(name: str, written: str | None, most: int) -> int | None:

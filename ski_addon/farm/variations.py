@@ -6,12 +6,14 @@ import itertools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..errors import SpecError
-from ..spec import RunSpec, row_values
 from ..spec.fields import CHOICE, FLAG, NUMBER, WHOLE, FieldInfo
-from ..spec.table import find_field
 from ..spec.values import parse_text
+
+if TYPE_CHECKING:
+    from .subjects import Subject
 
 RUNS_MAX = 256
 """The most runs of one job."""
@@ -36,9 +38,9 @@ class Variation:
         return self.key.replace(".", "_")
 
 
-def read_variations(written: Sequence[str], spec: RunSpec) -> tuple[Variation, ...]:
+def read_variations(written: Sequence[str], subject: Subject) -> tuple[Variation, ...]:
     """Return what `--vary` asks for; raises `SpecError` naming the key, or the option."""
-    variations = tuple(_read_variation(text, spec) for text in written)
+    variations = tuple(_read_variation(text, subject) for text in written)
     keys = [variation.key for variation in variations]
     for key in keys:
         if keys.count(key) > 1:
@@ -72,20 +74,19 @@ def _product(columns: Sequence[Sequence[object]]) -> int:
     return count
 
 
-def _read_variation(written: str, spec: RunSpec) -> Variation:
+def _read_variation(written: str, subject: Subject) -> Variation:
     key, equals, values = written.partition("=")
     key = key.strip()
     if not equals:
         hint = "write --vary course.turn_radius=10,15,20"
         raise SpecError(f"--vary {written}", problem="has no values", hint=hint)
-    place = row_values.find_place(key)
-    info = place.field if place else find_field(key)
+    info = subject.find_key(key)
     if info.kind not in VARIED:
         hint = "vary a number, a switch or a choice, or write several run documents"
         raise SpecError(f"--vary {key}", problem="is a text or a list, which cannot be varied", hint=hint)
     read = [value for part in values.split(",") for value in _read_values(info, part)]
     for value in read:
-        spec.with_overrides({key: value})  # says what is wrong with one that is not allowed
+        subject.changed({key: value})  # says what is wrong with one that is not allowed
         if read.count(value) > 1:
             raise SpecError(f"--vary {key}", value, problem="is given twice", hint="name each value once")
     return Variation(key, *_typed(info, read))

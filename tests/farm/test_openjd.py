@@ -20,7 +20,7 @@ from ski_addon.farm import local_run
 from ski_addon.farm.job import FarmJob
 from ski_addon.farm.submitting import write_job
 from ski_addon.simulation import Recording
-from ski_addon.spec import RunSpec, find_document
+from ski_addon.spec import RunSpec
 
 TWO_SECONDS = ("--set", "course.turn_count=1", "--set", "course.turn_duration=2", "--set", "simulation.time_step=0.002")
 KINDS = {
@@ -82,13 +82,13 @@ def stand_in(tmp_path):
         program = tmp_path / "program"
         program.write_text(f"#!{sys.executable}\n{script}")
         program.chmod(0o755)
-        job = FarmJob("Stand-in", RunSpec.from_toml(find_document("paper_main")).to_toml(), ((1, 4),), 2)
+        job = FarmJob("Stand-in", {"spec.toml": ""}, ((1, 4),), 2)
         folder = tmp_path / 'it\'s a "bundle" $HOME'
         write_job(job, folder, "openjd")
         template = folder / "template.json"
         template.write_text(template.read_text().replace('"default": "python"', f'"default": "{program}"'))
         said = []
-        local_run.run_bundle(folder, FarmJob("Stand-in", "", ((1, 4),), 2, workers="blender"), said.append)
+        local_run.run_bundle(folder, FarmJob("Stand-in", {}, ((1, 4),), 2, workers="blender"), said.append)
         return folder, said
 
     return run

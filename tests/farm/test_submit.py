@@ -9,6 +9,7 @@ import os
 import numpy as np
 import pytest
 
+from ski_addon.crowd import find_crowd, read_crowd
 from ski_addon.farm import flamenco
 from ski_addon.spec import RunSpec, find_document
 from tests.farm.conftest import read_template
@@ -273,3 +274,46 @@ def test_running_needs_openjd(refused, tmp_path, monkeypatch):
     assert code == 3
     assert "openjd-cli is needed for --run: install it with: pip install openjd-cli" in line
     assert not (tmp_path / "bundle").exists()
+
+
+def test_bundle_of_a_crowd_is_the_whole_crowd(submit, tmp_path):
+    options = ("--frames", "1-20", "--set", "crowd.count=3", "--vary", "crowd.seed=1-2", "--vary", "spread.mass=0,0.1")
+    code, out, err = submit("free_skiing", "--crowd", "-o", tmp_path, *options)
+    assert (code, err) == (0, "")
+    assert "4 runs, frames 1-20, 16 tasks" in out
+    assert sorted(os.listdir(tmp_path / "input")) == ["crowd.toml", "run_1.toml", "run_2.toml"]
+    crowd = read_crowd(tmp_path / "input" / "crowd.toml")
+    assert crowd == read_crowd(find_crowd("free_skiing"), changes={"crowd.count": 3})
+    assert run_of(tmp_path, "Simulate")["args"][2:4] == ["crowd", "{{Param.Input}}/crowd.toml"]
+    seed, mass = step(tmp_path, "Bake")["parameterSpace"]["taskParameterDefinitions"]
+    assert (seed["type"], seed["range"], mass["range"]) == ("INT", [1, 2], [0, 0.1])
+    assert "unchanged" in submit("free_skiing", "--crowd", "-o", tmp_path, *options)[1]
+
+
+def test_crowd_for_flamenco(submit, tmp_path):
+    assert submit("free_skiing", "--crowd", "-o", tmp_path, "--engine", "flamenco", "--frames", "1-20")[0] == 0
+    settings = json.loads((tmp_path / "job.json").read_text(encoding="utf-8"))["settings"]
+    assert (settings["command"], settings["spec"]) == ("crowd", str(tmp_path / "input" / "crowd.toml"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "--frames is needed for a crowd"),
+        (
+            ["--frames", "1", "--vary", "crowd.cuont=2,3"],
+            "crowd.cuont is not a key of a crowd: did you mean crowd.count",
+        ),
+        (["--frames", "1", "--vary", "crowd.count=0,3"], "crowd.count = 0 is outside"),
+    ],
+)
+def test_bad_crowds_are_one_line(refused, tmp_path, arguments, message):
+    code, line = refused("free_skiing", "--crowd", "-o", tmp_path / "bundle", *arguments)
+    assert code == 2
+    assert message in line
+
+
+def test_crowd_on_a_file_of_heights_is_refused(refused, tmp_path, hill):
+    code, line = refused(hill, "--crowd", "-o", tmp_path / "bundle", "--frames", "1", "--set", "spread.offset=0")
+    assert code == 2
+    assert "slope.grid_file cannot be taken along by the job of a crowd" in line

@@ -5,10 +5,12 @@ from __future__ import annotations
 import pytest
 
 from ski_addon.errors import SkiAddonError, SpecError
+from ski_addon.farm.subjects import run_subject
 from ski_addon.farm.variations import Variation, list_changes, read_variations
 from ski_addon.spec import RunSpec, find_document
 
 SPEC = RunSpec.from_toml(find_document("uneven_slalom"))
+RUN = run_subject(SPEC)
 
 
 @pytest.mark.parametrize(
@@ -23,7 +25,7 @@ SPEC = RunSpec.from_toml(find_document("uneven_slalom"))
     ],
 )
 def test_values_have_the_type_of_their_key(written, kind, values):
-    (variation,) = read_variations([written], SPEC)
+    (variation,) = read_variations([written], RUN)
     assert (variation.kind, variation.values) == (kind, values)
     assert variation.parameter == variation.key.replace(".", "_")
     for value in values:  # what a task gives to --set
@@ -32,7 +34,7 @@ def test_values_have_the_type_of_their_key(written, kind, values):
 
 def gate_list(count):
     gates = [{"x": 10.0 * k, "y": 2.0 * (-1) ** k} for k in range(1, count + 1)]
-    return RunSpec().with_overrides({"course.kind": "gates", "course.gate_setting": "list", "gate": gates})
+    return run_subject(RunSpec()).changed({"course.kind": "gates", "course.gate_setting": "list", "gate": gates})
 
 
 def test_values_of_rows_can_be_varied():
@@ -62,7 +64,7 @@ def test_values_of_rows_can_be_varied():
 )
 def test_bad_variations_are_one_line(written, message):
     with pytest.raises(SkiAddonError) as caught:
-        read_variations(written, SPEC)
+        read_variations(written, RUN)
     assert message in str(caught.value)
     assert caught.value.exit_code == 2
 
