@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -204,10 +205,9 @@ def submit_command(arguments: argparse.Namespace) -> int:
     given = {info.name: getattr(arguments, info.name) for info in dataclasses.fields(SubmitOptions)}
     if arguments.run:
         local_run.check_can_run(arguments.engine)
-    for run in subject.runs:
-        _check_size(run, arguments)
     with talk.progress() as progress:
-        job = make_job(subject, SubmitOptions(**given), results.plan_seconds, progress)
+        check = functools.partial(_check_size, arguments=arguments)
+        job = make_job(subject, SubmitOptions(**given), check, results.plan_seconds, progress)
     folder = Path(arguments.output)
     fresh = write_job(job, folder, arguments.engine)
     talk.say(f"{'wrote' if fresh else 'unchanged:'} {folder}, {job.described}")

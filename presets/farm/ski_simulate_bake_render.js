@@ -24,6 +24,8 @@ const JOB_TYPE = {
         { key: "output", type: "string", subtype: "dir_path", required: true, editable: false,
           eval: "str(Path(abspath(settings.output_root), jobname))",
           description: "Folder for the recording, the .blend and the frames. The same job sent again goes on there" },
+        { key: "force", type: "bool", default: false, visible: "submission", label: "Large Runs",
+          description: "Simulate even more than 8 GB or an hour of skiing" },
         { key: "engine", type: "string", choices: ["cycles", "workbench"], default: "cycles", visible: "submission",
           label: "Render Engine", description: "What renders; workbench is quick and plain" },
         { key: "device", type: "string", choices: ["CPU", "CUDA", "OPTIX", "HIP", "METAL", "ONEAPI"], default: "CPU",
@@ -151,7 +153,8 @@ function skiTask(settings, name, taskType, commands) {
 
 function simulateArguments(settings) {
     const ground = settings.ground ? ["--set", `slope.grid_file=${settings.ground}`] : [];
-    return [settings.command, settings.spec, "--output", path.join(settings.output, "run"), ...ground];
+    const force = settings.force ? ["--force"] : [];
+    return [settings.command, settings.spec, "--output", path.join(settings.output, "run"), ...force, ...ground];
 }
 
 function bakeArguments(settings) {

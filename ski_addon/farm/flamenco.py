@@ -39,6 +39,7 @@ def submitted_job(job: FarmJob, folder: Path) -> dict[str, Any]:
         "frames": show_frames(job.frames),
         "chunk_size": job.chunk,
         "output": str(folder / OUTPUT),
+        "force": job.force,
         "engine": job.render.get("engine", "cycles"),
         "device": job.render.get("device", "CPU"),
         "samples": int(job.render.get("samples", 0)),

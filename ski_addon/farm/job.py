@@ -36,9 +36,9 @@ class FarmJob:
 
     `command` simulates `document`, one of `documents` (TOML by file name), whose ground is `ground_name` in the folder
     `terrain` beside it, a copy of the file `ground` (both empty for a ground without a file). `frames` are rendered in
-    chunks of `chunk`, with the options `render`. With `pairs` the variations go together, value by value. `workers` is
-    a key of `LAUNCHES`. `run_seconds` is the estimated time of the longest simulation [s]. `cores` and `memory` [GB]
-    are what a worker must have at least.
+    chunks of `chunk`, with the options `render`. With `pairs` the variations go together, value by value. With `force`
+    large runs are simulated, too. `workers` is a key of `LAUNCHES`. `run_seconds` is the estimated time of the longest
+    simulation [s]. `cores` and `memory` [GB] are what a worker must have at least.
     """
 
     name: str
@@ -53,6 +53,7 @@ class FarmJob:
     variations: tuple[Variation, ...] = ()
     pairs: bool = False
     chunking: bool = False
+    force: bool = False
     workers: str = "python"
     run_seconds: float = 0.0
     fps: float = 24.0

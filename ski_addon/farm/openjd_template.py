@@ -71,6 +71,8 @@ def _folder(name: str, default: str, flow: str, description: str) -> dict[str, A
 
 def _simulate_step(job: FarmJob) -> dict[str, Any]:
     arguments = [job.command, f"{{{{Param.Input}}}}/{job.document}", "--output", f"{_run_folder(job)}/run"]
+    if job.force:
+        arguments.append("--force")
     for variation in job.variations:
         arguments += ["--set", f"{variation.key}={_task_value(variation.parameter)}"]
     return _step(job, "Simulate", arguments, job.simulate_seconds)

@@ -36,6 +36,7 @@ class SubmitOptions:
     pairs: bool = False
     chunking: bool = False
     workers: str | None = None
+    force: bool = False
     cores: str | None = None
     memory: str | None = None
 
@@ -43,23 +44,33 @@ class SubmitOptions:
 def make_job(
     subject: Subject,
     options: SubmitOptions,
+    check: Callable[[RunSpec], None],
     plan_seconds: Callable[[RunSpec], float],
     progress: Callable[[float, str], Any],
 ) -> FarmJob:
     """Return the job for a run or a crowd; raises `SkiAddonError` for an option that is wrong.
 
-    Without `options.frames` every run is planned by `plan_seconds`, which returns how long it lasts [s], and all frames
-    of the longest are rendered.
+    Every run is given to `check`, which raises if it is too large. Without `options.frames` every run is planned by
+    `plan_seconds`, which returns how long it lasts [s], and all frames of the longest are rendered.
     """
     render = read_render_options(options.render)
     _check_engine(options, render)
     variations = read_variations(options.vary, subject)
     varied = [subject.changed(changes) for changes in list_changes(variations, pairs=options.pairs)]
+    runs = [run for one in varied for run in one.runs]
+    for run in runs:
+        check(run)
     chunk = read_chunk(options.chunk)
-    ground = find_heights([run.slope for one in varied for run in one.runs])
+    ground = find_heights([run.slope for run in runs])
     ground_name = plain_name(ground) if ground else ""
     documents = subject.documents(f"{TERRAIN}/{ground_name}" if ground else "")
-    frames = _planned_frames(varied, plan_seconds, progress) if options.frames is None else read_frames(options.frames)
+    if options.frames is not None:
+        frames = read_frames(options.frames)
+    elif subject.command == "simulate":
+        frames = _planned_frames(runs, plan_seconds, progress)
+    else:
+        hint = "name the frames to render, for instance --frames 1-240"
+        raise SpecError("--frames", problem="is needed for a crowd, whose length is known when it was skied", hint=hint)
     split_frames(frames, chunk)  # says so if these are too many
     return FarmJob(
         name=" ".join(subject.name.split()) or "Ski run",
@@ -74,6 +85,7 @@ def make_job(
         variations=variations,
         pairs=options.pairs,
         chunking=options.chunking,
+        force=options.force,
         workers=options.workers or WORKERS[options.engine],
         run_seconds=max(one.wall_seconds for one in varied),
         fps=subject.fps,
@@ -112,13 +124,9 @@ def _check_engine(options: SubmitOptions, render: Mapping[str, str]) -> None:
 
 
 def _planned_frames(
-    varied: Sequence[Subject], plan_seconds: Callable[[RunSpec], float], progress: Callable[[float, str], Any]
+    runs: Sequence[RunSpec], plan_seconds: Callable[[RunSpec], float], progress: Callable[[float, str], Any]
 ) -> tuple[Span, ...]:
     """Return the frames from the first start to the last end of the planned runs."""
-    if varied[0].command != "simulate":
-        hint = "name the frames to render, for instance --frames 1-240"
-        raise SpecError("--frames", problem="is needed for a crowd, whose length is known when it was skied", hint=hint)
-    runs = [run for one in varied for run in one.runs]
     spans = []
     for k, run in enumerate(runs):
         progress(k / len(runs), "planning")

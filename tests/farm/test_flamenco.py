@@ -98,6 +98,11 @@ def test_frames_are_rendered_as_the_settings_say(compile_job):
     ]
 
 
+def test_crowds_and_large_runs_have_their_commands(compile_job):
+    ((_, arguments),) = commands_of(by_name(compile_job(command="crowd", force=True))["simulate"])
+    assert arguments[2:] == ["crowd", "/shots/run.toml", "--output", RUN, "--force"]
+
+
 def test_place_of_the_output_may_name_the_time(compile_job):
     job = compile_job(output="/shots/{timestamp}")
     assert job["settings"]["output"] == "/shots/2026-01-02_030405"

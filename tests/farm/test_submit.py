@@ -183,6 +183,25 @@ def test_long_runs_have_longer_to_simulate(submit, tmp_path):
     assert run_of(tmp_path / "long", "Simulate")["timeout"] > 3 * run_of(tmp_path / "short", "Simulate")["timeout"]
 
 
+def test_large_runs_are_forced_on_the_workers_too(submit, refused, tmp_path):
+    large = [
+        "paper_main",
+        "-o",
+        tmp_path / "bundle",
+        "--frames",
+        "1",
+        "--set",
+        "course.turn_duration=10",
+        "--vary",
+        "course.turn_count=2,500",
+    ]
+    code, line = refused(*large)
+    assert code == 2
+    assert "more than 8 GB or an hour" in line
+    assert submit(*large, "--force")[0] == 0
+    assert "--force" in run_of(tmp_path / "bundle", "Simulate")["args"]
+
+
 def test_flamenco_bundle_has_job_type_and_job(submit, tmp_path, hill):
     bundle = tmp_path / "bundle"
     assert (
