@@ -60,7 +60,7 @@ def run_apart(arguments: Sequence[str], command: Sequence[str] | None = None) ->
     this package, if not given).
     """
     start = list(command or (sys.executable, "-m", __package__ or "ski_addon"))
-    environment = os.environ | {VARIABLE: "1", "PYTHONPATH": os.pathsep.join([str(ROOT), *_python_path()])}
+    environment = os.environ | {VARIABLE: "1", "PYTHONPATH": python_path()}
     with subprocess.Popen(
         [*start, *arguments],
         stdin=subprocess.DEVNULL,
@@ -93,5 +93,7 @@ def _failure(said: str, exit_code: int) -> SkiAddonError:
     return error
 
 
-def _python_path() -> list[str]:
-    return [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+def python_path() -> str:
+    """Return the PYTHONPATH with which another process of this Python finds this library, and what we find."""
+    given = [entry for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+    return os.pathsep.join([str(ROOT), *given])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
+import functools
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -234,6 +236,35 @@ def crowd_command(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def submit_command(arguments: argparse.Namespace) -> int:
+    """`submit`: run or crowd -> bundle for a render farm, and if asked run it here."""
+    from .crowd import find_crowd
+    from .farm import local_run
+    from .farm.subjects import crowd_subject, run_subject
+    from .farm.submitting import SubmitOptions, make_job, write_job
+
+    talk = _talk(arguments)
+    if arguments.crowd:
+        parts = [find_document(part, PART_KINDS) for part in arguments.parts]
+        subject = crowd_subject(find_crowd(arguments.spec), parts, _changes(arguments))
+    else:
+        subject = run_subject(_read_spec(arguments.spec, arguments))
+    given = {info.name: getattr(arguments, info.name) for info in dataclasses.fields(SubmitOptions)}
+    if arguments.run:
+        local_run.check_can_run(arguments.engine)
+    with talk.progress() as progress:
+        check = functools.partial(_check_size, arguments=arguments)
+        job = make_job(subject, SubmitOptions(**given), check, results.plan_seconds, progress)
+    folder = Path(arguments.output)
+    fresh = write_job(job, folder, arguments.engine)
+    talk.say(f"{'wrote' if fresh else 'unchanged:'} {folder}, {job.described}")
+    if arguments.run:
+        local_run.run_bundle(folder, job, talk.log)
+        talk.say(f"results in {folder / 'output'}")
+    talk.give({"bundle": str(folder), "engine": arguments.engine, "runs": job.run_count, "tasks": job.task_count})
+    return 0
+
+
 def gallery_command(arguments: argparse.Namespace) -> int:
     """`gallery`: draw the figures of the 1993 paper."""
     from .gallery import find_pictures, save_picture
@@ -332,9 +363,12 @@ def _read_spec(name: str, arguments: argparse.Namespace) -> RunSpec:
 
 
 def _recorded_spec(recording: Recording, arguments: argparse.Namespace) -> RunSpec:
-    """Return the spec in a recording with other bake settings; what was simulated cannot be changed any more."""
+    """Return the spec in a recording with other bake settings; what was simulated cannot be changed any more.
+
+    But its file of heights may lie elsewhere than where it was simulated.
+    """
     for key in _changes(arguments):
-        if not key.startswith("bake."):
+        if not key.startswith("bake.") and key != "slope.grid_file":
             raise SpecError(key, problem="cannot be changed in a recording", hint="simulate again, or set bake. keys")
     if arguments.parts:
         raise SpecError("--part", problem="cannot be laid over a recording", hint="simulate again with it")

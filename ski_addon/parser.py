@@ -371,6 +371,56 @@ def _add_crowd(subparsers: _Subparsers) -> None:
     _add_force(parser)
 
 
+def _add_submit(subparsers: _Subparsers) -> None:
+    parser = _command(
+        subparsers,
+        "submit",
+        "write a bundle that simulates, bakes and renders a run on a render farm",
+        "The bundle is a folder with everything the farm needs: for Open Job Description (and AWS Deadline Cloud) a\n"
+        "job template, for Flamenco a job type and a job; see docs/farm.md.\n\n"
+        "  %(prog)s giant_slalom -o out/bundle --run           run it on this computer\n"
+        "  %(prog)s giant_slalom -o out/bundle --frames 1-48 --chunk 8\n"
+        "  %(prog)s giant_slalom -o out/sweep --vary course.turn_radius=16,18,20",
+    )
+    _add_spec(parser)
+    _add_output(parser, "BUNDLE", "folder for the bundle: a new or an empty one", required=True)
+    parser.add_argument("--engine", choices=("openjd", "flamenco"), default="openjd", help="the farm (openjd)")
+    parser.add_argument(
+        "--frames", metavar="A-B", help="frames to render, as 1-48 or 1-10,20-30 (all that are planned)"
+    )
+    parser.add_argument("--chunk", metavar="COUNT", default="10", help="frames that one task renders (10)")
+    parser.add_argument(
+        "--render",
+        metavar="OPTION=VALUE",
+        action="append",
+        default=[],
+        help="option of render: engine, device, samples, size, motion-blur or denoise; repeatable",
+    )
+    parser.add_argument(
+        "--vary",
+        metavar="KEY=VALUE,...",
+        action="append",
+        default=[],
+        help="make a run for each value of a key, and of several keys for each combination; repeatable",
+    )
+    for name, text in (
+        ("crowd", "SPEC is a crowd document or a preset in presets/crowds, as of the command crowd"),
+        ("pairs", "take the values of all --vary together: the first ones, the second ones and so on"),
+        ("chunking", "let the farm make the chunks, by Open Job Description's extension TASK_CHUNKING"),
+        ("run", "run the bundle here, by openjd (pip install openjd-cli)"),
+    ):
+        parser.add_argument(f"--{name}", action="store_true", help=text)
+    parser.add_argument(
+        "--workers",
+        choices=("python", "blender"),
+        help="workers have Python with ski_addon and bpy, or Blender with the extension (python; for flamenco blender)",
+    )
+    parser.add_argument("--cores", metavar="COUNT", help="least number of processor cores of a worker")
+    parser.add_argument("--memory", metavar="GB", help="least memory of a worker")
+    _add_talk(parser)
+    _add_force(parser)
+
+
 def _add_gallery(subparsers: _Subparsers) -> None:
     parser = _command(
         subparsers,
@@ -399,6 +449,6 @@ def _add_demo(subparsers: _Subparsers) -> None:
 
 COMMANDS = (
     *(_add_run, _add_plan, _add_preview, _add_simulate, _add_bake, _add_report, _add_render, _add_validate),
-    *(_add_crowd, _add_sweep, _add_robustness, _add_gallery, _add_demo),
+    *(_add_crowd, _add_sweep, _add_robustness, _add_submit, _add_gallery, _add_demo),
 )
 """What adds each command to the parser, in the order of the help."""

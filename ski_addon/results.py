@@ -70,6 +70,14 @@ def plan_summary(spec: RunSpec) -> dict[str, Any]:
     }
 
 
+def plan_seconds(spec: RunSpec) -> float:
+    """Plan a run and return how long it lasts [s]."""
+    from .pipeline import make_plan
+
+    time = make_plan(spec).plan.time
+    return float(time[-1] - time[0])
+
+
 def plan_lines(summary: Mapping[str, Any]) -> list[str]:
     """Return the lines of a plan's summary for a screen."""
     forms = (

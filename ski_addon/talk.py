@@ -46,6 +46,11 @@ class Talk:
         if not (self.json or self.quiet):
             write_line(sys.stdout, line)
 
+    def log(self, line: str) -> None:
+        """Pass on one line of another program: on stderr where stdout is to hold JSON."""
+        if not self.quiet:
+            write_line(sys.stderr if self.json else sys.stdout, line)
+
     def give(self, result: object) -> None:
         """Give the machine-readable result."""
         if self.json:

@@ -113,5 +113,11 @@ def test_a_zip_with_something_else_is_refused(build: ModuleType, tmp_path: Path,
 def test_staging_leaves_out_what_python_and_tools_write(build: ModuleType, tmp_path: Path) -> None:
     build.stage(tmp_path / "stage", "id = 'x'\n", [], tmp_path)
     names = {path.name for path in (tmp_path / "stage").rglob("*")}
-    assert {"__init__.py", "blender_manifest.toml", "presets", "giant_slalom.toml"} <= names
+    assert {
+        "__init__.py",
+        "blender_manifest.toml",
+        "presets",
+        "giant_slalom.toml",
+        "ski_simulate_bake_render.js",
+    } <= names
     assert not names & {"__pycache__", "tests", ".git", ".venv"}

@@ -83,6 +83,13 @@ def test_bake_is_not_done_twice_and_a_file_that_was_touched_is_made_again(run, b
     assert "asked for, made again" in run("bake", tmp_path, "--set", "bake.fps=30", "--redo")[1]
 
 
+def test_heights_of_a_recording_may_lie_elsewhere(run, blender, tmp_path):
+    (tmp_path / "recording.npz").write_text("")
+    code, _, err = run("bake", tmp_path, "--set", f"slope.grid_file={tmp_path / 'moved.npz'}")
+    assert (code, err) == (0, "")
+    assert blender["bake"][1].slope.grid_file == str(tmp_path / "moved.npz")
+
+
 def test_bake_settings_of_a_recording_can_be_changed_but_not_its_physics(run, blender, tmp_path):
     (tmp_path / "recording.npz").write_text("")
     code, out, _ = run("bake", tmp_path, "--set", "bake.fps=30", "-o", tmp_path / "out" / "a.blend", "--json")

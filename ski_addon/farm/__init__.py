@@ -1,0 +1,1 @@
+"""Runs on render farms: job bundles for Open Job Description, and jobs for Flamenco."""
