@@ -110,8 +110,9 @@ class OsqpSolver:
         solver.solve()
         info = solver.info
         status, iterations = int(info.status_val), int(info.iter)
+        if status == SOLVED:
+            iterations += self._refine()
         if info.rho_updates:
-            iterations += self._refine() if status == SOLVED else 0
             solver.update_rho(STEP_SIZE)
         status = 0 if status == SOLVED else status
         unknowns, multipliers = np.array(solver.solution.x), np.array(solver.solution.y)
@@ -123,7 +124,7 @@ class OsqpSolver:
         return Solution(unknowns, iterations, status, attempt)
 
     def _refine(self) -> int:
-        """Go on from a rough answer at limits that bind, until their equations can be solved; return the iterations."""
+        """Go on until the equations of the limits that bind can be solved; return the iterations that took."""
         iterations = 0
         for tolerance in FINER_TOLERANCES:
             self._change(polishing=1, eps_abs=tolerance, eps_rel=tolerance)
