@@ -332,7 +332,8 @@ def _add_sweep(subparsers: _Subparsers) -> None:
         metavar="KEY=VALUE,...",
         action="append",
         required=True,
-        help="values of one key (parted by ; if they hold commas themselves); repeatable: every combination is skied",
+        help="values of one key, whole numbers also as 1-5 (parted by ; if they hold commas themselves); repeatable:"
+        " every combination is skied",
     )
     _add_output(parser, "DIR", "folder for the results", required=True)
     parser.add_argument("--jobs", metavar="COUNT", help="processes at the same time (as many as there are processors)")
@@ -386,7 +387,7 @@ def _add_submit(subparsers: _Subparsers) -> None:
     _add_output(parser, "BUNDLE", "folder for the bundle: a new or an empty one", required=True)
     parser.add_argument("--engine", choices=("openjd", "flamenco"), default="openjd", help="the farm (openjd)")
     parser.add_argument(
-        "--frames", metavar="A-B", help="frames to render, as 1-48 or 1-10,20-30 (all that are planned)"
+        "--frames", metavar="A-B", help="frames to render: 1-250, or 1-9,20, or 1-100:5 (all that are planned)"
     )
     parser.add_argument("--chunk", metavar="COUNT", default="10", help="frames that one task renders (10)")
     parser.add_argument(
@@ -401,7 +402,8 @@ def _add_submit(subparsers: _Subparsers) -> None:
         metavar="KEY=VALUE,...",
         action="append",
         default=[],
-        help="make a run for each value of a key, and of several keys for each combination; repeatable",
+        help="make a run for each value of a key, written as for sweep, and of several keys for each combination;"
+        " repeatable",
     )
     for name, text in (
         ("crowd", "SPEC is a crowd document or a preset in presets/crowds, as of the command crowd"),

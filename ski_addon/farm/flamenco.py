@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..spec.presets import preset_folder
-from .frame_chunks import show_frames
+from ..tasks.frame_list import frame_words
 from .job import FarmJob
 from .openjd_template import INPUT, OUTPUT
 
@@ -36,7 +36,7 @@ def submitted_job(job: FarmJob, folder: Path) -> dict[str, Any]:
         "command": job.command,
         "spec": str(folder / INPUT / job.document),
         "ground": str(folder / INPUT / job.ground_path) if job.ground else "",
-        "frames": show_frames(job.frames),
+        "frames": frame_words(job.frames, steps=False),  # its frameChunker knows no steps
         "chunk_size": job.chunk,
         "output": str(folder / OUTPUT),
         "force": job.force,

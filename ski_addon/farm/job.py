@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from .frame_chunks import Span, show_frames, split_frames
+from ..tasks.frame_list import frame_words
+from .frame_chunks import split_frames
 from .variations import Variation, list_changes
 
 TERRAIN = "terrain"
@@ -43,7 +44,7 @@ class FarmJob:
 
     name: str
     documents: Mapping[str, str]
-    frames: tuple[Span, ...]
+    frames: tuple[int, ...]
     chunk: int
     command: str = "simulate"
     document: str = "spec.toml"
@@ -79,7 +80,7 @@ class FarmJob:
     def described(self) -> str:
         """One clause for a person: "1 run, frames 1-48, 7 tasks"."""
         runs = "1 run" if self.run_count == 1 else f"{self.run_count} runs"
-        return f"{runs}, frames {show_frames(self.frames)}, {self.task_count} tasks"
+        return f"{runs}, frames {frame_words(self.frames)}, {self.task_count} tasks"
 
     @property
     def simulate_seconds(self) -> int:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from .frame_chunks import show_frames, show_span, split_frames
+from ..tasks.frame_list import frame_words
+from .frame_chunks import split_frames
 from .job import BAKE_SECONDS, LAUNCHES, FarmJob
 from .render_options import render_arguments
 
@@ -55,7 +56,7 @@ def _parameters(job: FarmJob) -> list[dict[str, Any]]:
     ]
     if job.chunking:
         parameters += [
-            _parameter("Frames", "STRING", show_frames(job.frames), "Frames to render"),
+            _parameter("Frames", "STRING", frame_words(job.frames), "Frames to render"),
             {**_parameter("ChunkSize", "INT", job.chunk, "Frames that one task renders"), "minValue": 1},
         ]
     return parameters
@@ -93,7 +94,7 @@ def _render_step(job: FarmJob) -> dict[str, Any]:
 
 def _frames(job: FarmJob) -> dict[str, Any]:
     if not job.chunking:
-        chunks = [show_span(chunk) for chunk in split_frames(job.frames, job.chunk)]
+        chunks = [frame_words(chunk) for chunk in split_frames(job.frames, job.chunk)]
         return {"name": "Frames", "type": "STRING", "range": chunks}
     how = {"defaultTaskCount": "{{Param.ChunkSize}}", "rangeConstraint": "CONTIGUOUS"}
     return {"name": "Frames", "type": "CHUNK[INT]", "range": "{{Param.Frames}}", "chunks": how}

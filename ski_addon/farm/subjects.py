@@ -13,10 +13,9 @@ from typing import Any
 from ..crowd import CrowdSpec, is_crowd_key, read_crowd, write_crowd
 from ..crowd import crowd_spec as crowd_keys
 from ..errors import SpecError
-from ..spec import FieldInfo, RunSpec, estimate, row_values
+from ..spec import FieldInfo, RunSpec, estimate, find_key
 from ..spec.presets import find_ground
 from ..spec.sections import SlopeSpec
-from ..spec.table import find_field
 from . import bundle
 
 RUN_DOCUMENT, CROWD_DOCUMENT = "spec.toml", "crowd.toml"
@@ -58,7 +57,7 @@ def run_subject(spec: RunSpec) -> Subject:
         runs=(spec,),
         skiers=1,
         changed=lambda changes: run_subject(spec.with_overrides(changes)),
-        find_key=find_run_key,
+        find_key=find_key,
         documents=lambda ground: {RUN_DOCUMENT: with_ground(spec, ground).to_toml()},
     )
 
@@ -74,7 +73,7 @@ def crowd_subject(path: Path, parts: Sequence[Path], changes: Mapping[str, Any])
         runs=tuple(run.spec for run in crowd.runs),
         skiers=crowd.crowd.count,
         changed=lambda more: crowd_subject(path, parts, {**changes, **more}),
-        find_key=lambda key: crowd_keys.find_field(key) if is_crowd_key(key) else find_run_key(key),
+        find_key=lambda key: crowd_keys.find_field(key) if is_crowd_key(key) else find_key(key),
         documents=lambda ground: _crowd_documents(crowd, ground),
     )
 
@@ -87,12 +86,6 @@ def _crowd_documents(crowd: CrowdSpec, ground: str) -> dict[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         write_crowd(dataclasses.replace(crowd, runs=runs), Path(folder), CROWD_DOCUMENT)
         return {path.name: path.read_text(encoding="utf-8") for path in sorted(Path(folder).iterdir())}
-
-
-def find_run_key(key: str) -> FieldInfo:
-    """Return the field of a dotted key of a run, also one of a row; raises `SpecError`."""
-    place = row_values.find_place(key)
-    return place.field if place else find_field(key)
 
 
 def find_heights(slopes: Sequence[SlopeSpec]) -> Path | None:

@@ -12,8 +12,9 @@ from typing import Any
 from ..errors import SpecError
 from ..spec import RunSpec
 from ..talk import json_text
+from ..tasks.frame_list import FARTHEST
 from . import bundle, flamenco, openjd_template
-from .frame_chunks import FRAME_MAX, Span, read_chunk, read_frames, split_frames
+from .frame_chunks import read_chunk, read_farm_frames, split_frames
 from .job import TERRAIN, FarmJob
 from .render_options import read_render_options
 from .subjects import Subject, find_heights, plain_name
@@ -65,7 +66,7 @@ def make_job(
     ground_name = plain_name(ground) if ground else ""
     documents = subject.documents(f"{TERRAIN}/{ground_name}" if ground else "")
     if options.frames is not None:
-        frames = read_frames(options.frames)
+        frames = read_farm_frames(options.frames)
     elif subject.command == "simulate":
         frames = _planned_frames(runs, plan_seconds, progress)
     else:
@@ -125,7 +126,7 @@ def _check_engine(options: SubmitOptions, render: Mapping[str, str]) -> None:
 
 def _planned_frames(
     runs: Sequence[RunSpec], plan_seconds: Callable[[RunSpec], float], progress: Callable[[float, str], Any]
-) -> tuple[Span, ...]:
+) -> tuple[int, ...]:
     """Return the frames from the first start to the last end of the planned runs."""
     spans = []
     for k, run in enumerate(runs):
@@ -133,10 +134,10 @@ def _planned_frames(
         first = run.bake.frame_start
         spans.append((first, first + int(plan_seconds(run) * run.bake.fps)))
     first, last = min(span[0] for span in spans), max(span[1] for span in spans)
-    if first < 0 or last > FRAME_MAX:
+    if first < 0 or last > FARTHEST:
         hint = "set bake.frame_start to 1, or name the frames to render with --frames"
-        raise SpecError("bake.frame_start", first, f"frames of 0..{FRAME_MAX} on a farm", hint)
-    return ((first, last),)
+        raise SpecError("bake.frame_start", first, f"frames of 0..{FARTHEST} on a farm", hint)
+    return tuple(range(first, last + 1))
 
 
 def _whole(name: str, written: str | None, most: int) -> int | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-import re
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..errors import SpecError
 from ..spec.fields import CHOICE, FLAG, NUMBER, WHOLE, FieldInfo
 from ..spec.values import parse_text
+from ..sweep.written import read_written
 
 if TYPE_CHECKING:
     from .subjects import Subject
@@ -21,7 +22,6 @@ KEYS_MAX = 15
 """The most keys that can be varied: Open Job Description has 16 task parameters, and one is for the frames."""
 VARIED = (NUMBER, WHOLE, FLAG, CHOICE)
 """Kinds of keys that can be varied; texts and lists cannot be told apart in a name of a folder."""
-_WHOLE_RANGE = re.compile(r"([0-9]{1,9})-([0-9]{1,9})")
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,10 @@ class Variation:
 
 def read_variations(written: Sequence[str], subject: Subject) -> tuple[Variation, ...]:
     """Return what `--vary` asks for; raises `SpecError` naming the key, or the option."""
-    variations = tuple(_read_variation(text, subject) for text in written)
-    keys = [variation.key for variation in variations]
-    for key in keys:
-        if keys.count(key) > 1:
-            raise SpecError(f"--vary {key}", problem="is given twice", hint="name all its values at once")
-    if len(keys) > KEYS_MAX:
-        raise SpecError("--vary", len(keys), f"1..{KEYS_MAX} keys", "vary fewer keys")
-    return variations
+    table = read_written(written, subject.find_key, RUNS_MAX)
+    if len(table) > KEYS_MAX:
+        raise SpecError("--vary", len(table), f"1..{KEYS_MAX} keys", "vary fewer keys")
+    return tuple(_variation(key, info, texts, subject) for key, (info, texts) in table.items())
 
 
 def list_changes(variations: Sequence[Variation], *, pairs: bool) -> list[dict[str, int | float | str]]:
@@ -59,7 +55,7 @@ def list_changes(variations: Sequence[Variation], *, pairs: bool) -> list[dict[s
     if pairs and len({len(column) for column in columns}) > 1:
         counts = ", ".join(f"{variation.key} has {len(variation.values)}" for variation in variations)
         raise SpecError("--pairs", problem=f"needs as many values of each key, but {counts}", hint="even them up")
-    count = len(columns[0]) if pairs and columns else _product(columns)
+    count = len(columns[0]) if pairs and columns else math.prod(map(len, columns))
     if count > RUNS_MAX:
         raise SpecError("--vary", problem=f"makes {count} runs, allowed are {RUNS_MAX}", hint="name fewer values")
     keys = [variation.key for variation in variations]
@@ -67,40 +63,14 @@ def list_changes(variations: Sequence[Variation], *, pairs: bool) -> list[dict[s
     return [dict(zip(keys, row, strict=True)) for row in rows]
 
 
-def _product(columns: Sequence[Sequence[object]]) -> int:
-    count = 1
-    for column in columns:
-        count *= len(column)
-    return count
-
-
-def _read_variation(written: str, subject: Subject) -> Variation:
-    key, equals, values = written.partition("=")
-    key = key.strip()
-    if not equals:
-        hint = "write --vary course.turn_radius=10,15,20"
-        raise SpecError(f"--vary {written}", problem="has no values", hint=hint)
-    info = subject.find_key(key)
+def _variation(key: str, info: FieldInfo, texts: Sequence[str], subject: Subject) -> Variation:
     if info.kind not in VARIED:
         hint = "vary a number, a switch or a choice, or write several run documents"
         raise SpecError(f"--vary {key}", problem="is a text or a list, which cannot be varied", hint=hint)
-    read = [value for part in values.split(",") for value in _read_values(info, part)]
+    read = [parse_text(info, text) for text in texts]
     for value in read:
         subject.changed({key: value})  # says what is wrong with one that is not allowed
-        if read.count(value) > 1:
-            raise SpecError(f"--vary {key}", value, problem="is given twice", hint="name each value once")
-    return Variation(key, *_typed(info, read))
-
-
-def _read_values(info: FieldInfo, part: str) -> list[object]:
-    span = _WHOLE_RANGE.fullmatch(part.strip())
-    if info.kind != WHOLE or not span:
-        return [parse_text(info, part)]
-    first, last = int(span[1]), int(span[2])
-    if not first <= last < first + RUNS_MAX:
-        allowed = f"a range of 1..{RUNS_MAX} whole numbers"
-        raise SpecError(f"--vary {info.key}", part.strip(), allowed, "write the lower number first, and fewer")
-    return list(range(first, last + 1))
+    return Variation(key, *_typed(info, list(dict.fromkeys(read))))  # 10 and 10.0 are one
 
 
 def _typed(info: FieldInfo, read: list[object]) -> tuple[str, tuple[int | float | str, ...]]:

@@ -10,6 +10,7 @@ from .fields import FieldInfo
 from .figure_section import FigureSpec
 from .output_sections import BakeSpec, SimulationSpec
 from .presets import PART_KINDS, PRESET_KINDS, Preset, find_document, find_ground, list_presets, preset_folder
+from .row_values import find_key
 from .rows import GateSpec, ObstacleSpec, PointSpec, PushSpec, RhythmSpec
 from .run_spec import SCHEMA_VERSION, RunSpec
 from .sections import CourseSpec, SkierSpec, SlopeSpec, SnowSpec, TechniqueSpec
@@ -41,6 +42,7 @@ __all__ = [
     "field_table",
     "find_field",
     "find_document",
+    "find_key",
     "find_ground",
     "list_presets",
     "preset_folder",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import SpecError, show_value
 from .fields import FieldInfo
 from .records import record
-from .table import row_kinds
+from .table import find_field, row_kinds
 
 if TYPE_CHECKING:
     from .run_spec import RunSpec
@@ -90,6 +90,12 @@ def find_place(key: str) -> RowPlace | None:
         nearest = f"{head}.{number[:9]}.{_nearest(info, name)}"
         raise SpecError(key, problem="is not a key of a run", hint=f"did you mean {nearest}?")
     return RowPlace(info, int(number[:9]), fields[name])
+
+
+def find_key(key: str) -> FieldInfo:
+    """Return the field of a dotted key of a run, also one of a row ("gate.2.radius"); raises `SpecError`."""
+    place = find_place(key)
+    return place.field if place else find_field(key)
 
 
 def with_places(spec: RunSpec, changes: Mapping[RowPlace, object]) -> dict[str, Any]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..errors import SpecError, one_line
-from ..spec import RunSpec
+from ..spec import RunSpec, find_key
 from ..tasks.keys import digest
+from .written import read_written
 
 MOST = 10_000
 """Most runs of one sweep."""
@@ -31,21 +33,10 @@ class Combination:
 def read_variations(spec: RunSpec, written: Sequence[str]) -> list[Combination]:
     """Return the combinations of `written` (`KEY=VALUE,VALUE,...` each), the last key changing first.
 
-    Values that hold commas themselves are parted by semicolons. Raises `SpecError` for a wrong key or value.
+    See `read_written`. Raises `SpecError` for a wrong key or value.
     """
-    table: dict[str, list[str]] = {}
-    for text in written:
-        key, equals, values = text.partition("=")
-        key = key.strip()
-        parts = [part.strip() for part in values.split(";" if ";" in values else ",")]
-        if not equals or not all(parts):
-            raise SpecError(f"--vary {text}", problem="has no values", hint="write --vary key=value,value,...")
-        if key in table:
-            raise SpecError(f"--vary {key}", problem="is there twice", hint="give all values of a key at once")
-        table[key] = list(dict.fromkeys(parts))
-    count = 1
-    for parts in table.values():
-        count *= len(parts)
+    table = {key: list(dict.fromkeys(texts)) for key, (_, texts) in read_written(written, find_key, MOST).items()}
+    count = math.prod(len(texts) for texts in table.values())
     if count > MOST:
         raise SpecError("--vary", count, f"1..{MOST} runs", "vary fewer keys, or with fewer values")
     return _without_repeats([_combination(spec, dict(zip(table, row, strict=True))) for row in _rows(table)])

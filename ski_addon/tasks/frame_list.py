@@ -32,12 +32,18 @@ def read_frames(text: str, option: str = "--frames") -> list[int]:
     return sorted(frames)
 
 
-def frame_words(frames: Sequence[int]) -> str:
-    """Return ascending frames as they are written: ranges with a dash."""
-    groups: list[list[int]] = []
-    for frame in frames:
-        if groups and frame == groups[-1][-1] + 1:
-            groups[-1].append(frame)
-        else:
-            groups.append([frame])
-    return ",".join(str(group[0]) if len(group) == 1 else f"{group[0]}-{group[-1]}" for group in groups)
+def frame_words(frames: Sequence[int], *, steps: bool = True) -> str:
+    """Return ascending frames as `read_frames` takes them: `1-3,7`, and with `steps` also `1-99:2`."""
+    words, start = [], 0
+    while start < len(frames):
+        first = frames[start]
+        step = frames[start + 1] - first if start + 1 < len(frames) else 1
+        end = start + 1
+        while (steps or step == 1) and end < len(frames) and frames[end] - frames[end - 1] == step:
+            end += 1
+        if step > 1 and end - start == 2:
+            end -= 1  # two frames apart are no range
+        last = frames[end - 1]
+        words.append(str(first) if last == first else f"{first}-{last}" + (f":{step}" if step > 1 else ""))
+        start = end
+    return ",".join(words)

@@ -173,8 +173,10 @@ def test_settings_are_what_blender_and_manager_know(engine):
 
 
 def test_job_for_the_api_is_one_the_script_takes(engine, tmp_path):
-    job = FarmJob("Run", {}, frames=((1, 25),), chunk=10, ground=tmp_path / "x.npz", ground_name="x.npz", fps=30.0)
+    frames = (*range(1, 22), 25, 28, 31, 34)
+    job = FarmJob("Run", {}, frames, chunk=10, ground=tmp_path / "x.npz", ground_name="x.npz", fps=30.0)
     submitted = flamenco.submitted_job(job, tmp_path)
+    assert submitted["settings"]["frames"] == "1-21,25,28,31,34"  # its frameChunker knows no steps
     keys = json.loads(engine.eval("JSON.stringify(JOB_TYPE.settings.map((setting) => setting.key))"))
     assert set(submitted["settings"]) == set(keys) - {"output_root"}
     assert flamenco.SCRIPT.removesuffix(".js").replace("_", "-") == flamenco.JOB_TYPE

@@ -27,6 +27,8 @@ KINDS = {
     "plain": (),
     "one frame": ("--frames", "7"),
     "several ranges": ("--frames", "0-3,10-40", "--chunk", "7"),
+    "steps": ("--frames", "1-100:5,200", "--chunk", "6"),
+    "chunked steps": ("--chunking", "--frames", "1-100:5,200", "--chunk", "6"),
     "chunking": ("--chunking", "--frames", "1-20,30", "--chunk", "8"),
     "sweep": ("--vary", "course.turn_radius=10,15.5", "--vary", "simulation.seed=1-3", "--frames", "1-20"),
     "pairs": ("--vary", "skier.mass=60,70", "--vary", "course.first_turn=left,right", "--pairs", "--frames", "1-20"),
@@ -34,8 +36,8 @@ KINDS = {
     "blender with needs": ("--workers", "blender", "--cores", "4", "--memory", "8"),
 }
 TASKS = {
-    **{"plain": 6, "one frame": 3, "several ranges": 8, "chunking": 23, "sweep": 24, "pairs": 8},
-    **{"chunked sweep": 44, "blender with needs": 6},
+    **{"plain": 6, "one frame": 3, "several ranges": 7, "chunking": 23, "sweep": 24, "pairs": 8},
+    **{"steps": 6, "chunked steps": 23, "chunked sweep": 44, "blender with needs": 6},
 }
 """Tasks by openjd's count, which takes every frame of a chunk for one."""
 
@@ -82,13 +84,13 @@ def stand_in(tmp_path):
         program = tmp_path / "program"
         program.write_text(f"#!{sys.executable}\n{script}")
         program.chmod(0o755)
-        job = FarmJob("Stand-in", {"spec.toml": ""}, ((1, 4),), 2)
+        job = FarmJob("Stand-in", {"spec.toml": ""}, (1, 2, 3, 4), 2)
         folder = tmp_path / 'it\'s a "bundle" $HOME'
         write_job(job, folder, "openjd")
         template = folder / "template.json"
         template.write_text(template.read_text().replace('"default": "python"', f'"default": "{program}"'))
         said = []
-        local_run.run_bundle(folder, FarmJob("Stand-in", {}, ((1, 4),), 2, workers="blender"), said.append)
+        local_run.run_bundle(folder, FarmJob("Stand-in", {}, (1, 2, 3, 4), 2, workers="blender"), said.append)
         return folder, said
 
     return run

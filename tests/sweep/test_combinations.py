@@ -34,6 +34,18 @@ def test_the_same_run_twice_is_one():
     assert [each.values for each in read_variations(SPEC, ["skier.mass=60,60.0,60"])] == [{"skier.mass": "60"}]
 
 
+def test_whole_numbers_can_be_a_range():
+    assert [each.spec.simulation.seed for each in read_variations(SPEC, ["simulation.seed=3-5,9"])] == [3, 4, 5, 9]
+    with pytest.raises(SpecError, match=r"is outside a range of 1\.\.10000 whole numbers"):
+        read_variations(SPEC, ["simulation.seed=5-3"])
+
+
+def test_values_of_rows_can_vary():
+    gates = [{"x": 10.0 * k, "y": 2.0 * (-1) ** k} for k in range(1, 5)]
+    spec = SPEC.with_tables({"course": {"kind": "gates", "gate_setting": "list"}, "gate": gates})
+    assert [each.spec.gate[0].x for each in read_variations(spec, ["gate.1.x=8,9"])] == [8.0, 9.0]
+
+
 def test_words_and_values_with_commas_are_taken():
     found = read_variations(SPEC, ["technique.angulation=auto,-0.1"])
     assert [each.spec.technique.angulation for each in found] == ["auto", -0.1]
@@ -47,12 +59,12 @@ def test_words_and_values_with_commas_are_taken():
 @pytest.mark.parametrize(
     ("written", "words"),
     [
-        (["course.turn_radius"], "has no values: write --vary key=value,value,..."),
-        (["course.turn_radius="], "has no values"),
-        (["course.turn_radius=1,,2"], "has no values"),
+        (["course.turn_radius"], "has no values: write for instance --vary course.turn_radius=10,15,20"),
+        (["course.turn_radius="], "has an empty value"),
+        (["course.turn_radius=1,,2"], "has an empty value"),
         (["course.turn_radus=10"], "did you mean course.turn_radius?"),
         (["course.turn_radius=10,1"], r"course.turn_radius = 1 is outside 3..200 m"),
-        (["skier.mass=60", "skier.mass=70"], "--vary skier.mass is there twice"),
+        (["skier.mass=60", "skier.mass=70"], "--vary skier.mass is given twice"),
         ([f"skier.mass={MANY}", f"skier.strength={MANY}"], "--vary = 10201 is outside 1..10000 runs"),
     ],
 )  # fmt: skip

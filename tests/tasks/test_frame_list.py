@@ -29,6 +29,23 @@ def test_wrong_lists_are_refused_by_name(text):
         read_frames(text)
 
 
-def test_frames_are_said_as_they_are_written():
-    assert frame_words([1, 2, 3, 7, 9, 10]) == "1-3,7,9-10"
-    assert read_frames(frame_words([-1, 0, 4])) == [-1, 0, 4]
+@pytest.mark.parametrize(
+    ("frames", "words", "plain"),
+    [
+        ([1, 2, 3, 7, 9, 10], "1-3,7,9-10", "1-3,7,9-10"),
+        ([-1, 0, 4], "-1-0,4", "-1-0,4"),
+        ([1, 2, 4, 6, 8, 20], "1-2,4-8:2,20", "1-2,4,6,8,20"),
+        ([5], "5", "5"),
+        ([], "", ""),
+    ],
+)
+def test_frames_are_said_as_they_are_written(frames, words, plain):
+    assert frame_words(frames) == words and frame_words(frames, steps=False) == plain
+    if frames:
+        assert read_frames(words) == read_frames(plain) == frames
+
+
+def test_many_frames_with_steps_are_said_at_once():
+    frames = list(range(0, 1_000_000, 3))
+    assert frame_words(frames) == "0-999999:3"
+    assert frame_words(frames, steps=False).count(",") == len(frames) - 1
