@@ -96,6 +96,7 @@ def simulate_run(
 
     With `checkpoints` an interrupt ends it after the present step, and the recording is "cancelled".
     """
+    from .measures import measure_motion
     from .pipeline import make_plan, run_simulation
     from .simulation import summarise
 
@@ -108,7 +109,8 @@ def simulate_run(
             recording, step_seconds = run_simulation(
                 planned, lambda *now: progress(*now) is not False and not interrupted(), checkpoints
             )
-    return recording, summarise(recording, step_seconds)
+    summary = summarise(recording, step_seconds)
+    return recording, {**summary, "motion": measure_motion(recording, planned.model.skeleton, planned.terrain)}
 
 
 def run_robustness(
