@@ -13,6 +13,7 @@ from ..spec import RunSpec
 from .absorption import Sink, missing_length
 from .checks import check_ground, check_lean, check_load, check_ranges, check_reach
 from .comparison import RIGID_LEAN
+from .gaze import gaze_directions
 from .line import Line, turned_frames
 from .pose import plan_poses
 from .speed_and_lean import SpeedAndLean
@@ -96,7 +97,10 @@ def plan_motion(spec: RunSpec, track: Track, model: SkierModel) -> MotionPlan:
         skis, body = turned_frames(line.tangent, line.surface_normal, line.steering), line.body_frame
         com = line.position + pendulum.y[:, None] * body[..., 1] + pendulum.h[:, None] * body[..., 2]
         angulation = _angulation(spec, line, pendulum.inclination)
-        poses = plan_poses(model.skeleton, stance, skis, body, line.position, com, pendulum, angulation, line.steering)
+        gaze = gaze_directions(line, com, model.skeleton.height, spec.technique.look_ahead)
+        poses = plan_poses(
+            model.skeleton, stance, skis, body, line.position, com, pendulum, angulation, line.steering, gaze
+        )
         if not sink.deepen(line.arc_length, missing_length(model.skeleton, poses)):
             break
     check_reach(line, poses)

@@ -1,8 +1,9 @@
 """Poses along the plan: angulated upper body and legs by inverse kinematics [SG19 sec. 4.4].
 
-The pelvis leans by (1 + beta_a) of the inclination [SG19 Eq. 15]; spine and head right themselves a little more, in
-proportion to the angulation. The skis are edged by the inclination; where the boots' side play cannot take the
-difference between leg and ski, the ski's edge follows the leg, which is how angulation adds edge on a real skier.
+The pelvis leans by (1 + beta_a) of the inclination [SG19 Eq. 15]; the spine rights itself a little more, in proportion
+to the angulation, and the head looks ahead (`gaze.py`). The skis are edged by the inclination; where the boots' side
+play cannot take the difference between leg and ski, the ski's edge follows the leg, which is how angulation adds edge
+on a real skier.
 """
 
 from __future__ import annotations
@@ -16,18 +17,19 @@ from ..body.leg_ik import ankle_from_ski, solve_leg
 from ..body.skeleton import SIDES
 from ..frames import matrix_from_quaternion, quaternion_from_matrix, rotation_about
 from ..snow import edge_lift
+from .gaze import turn_head
 from .pendulum import Pendulum
 from .stance import Stance
 from .standing import place_pelvis
 
-SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25, "head_x": 0.30}
-"""Lean taken back by spine and head, in units of the pelvis's angulation angle."""
+SPINE_SHARE = {"abdomen_x": 0.30, "chest_x": 0.25}
+"""Lean taken back by the spine, in units of the pelvis's angulation angle."""
 PELVIS_TURN = 0.4
-SPINE_TURN = {"abdomen_z": 0.15, "chest_z": 0.20, "head_z": 0.20}
+SPINE_TURN = {"abdomen_z": 0.15, "chest_z": 0.20}
 """How far pelvis and spine turn back from skidding skis towards the direction of travel, in units of the steering."""
-CROUCH_PITCH = {"pelvis": 1.0, "abdomen_y": 1.0, "chest_y": 0.8, "head_y": -2.2}
+CROUCH_PITCH = {"pelvis": 1.0, "abdomen_y": 1.0, "chest_y": 0.8}
 """How much further forward pelvis and spine bend for each metre that the legs bend [rad/m], so that the hips can go
-back; the eyes stay ahead.
+back.
 """
 
 ARM_RAISE, ARM_SPREAD, WRIST_TURN = 0.35, 0.35, 0.45
@@ -60,19 +62,21 @@ def plan_poses(
     pendulum: Pendulum,
     angulation: np.ndarray,
     steering: np.ndarray,
+    gaze: np.ndarray,
 ) -> PlannedPoses:
     """Return poses whose skis lie on the track and whose centre of mass is `com` (n, 3) [m, world].
 
     `world_from_skis` (n, 3, 3) has columns along the skis, across to the left, and up from the snow, `world_from_body`
     the same for the smooth ground; `position` (n, 3) is the middle between the skis; `pendulum` leans the body,
     `angulation` (n,) is beta_a, -1..0, and `steering` (n,) [rad] the skis' angle from the track, out of which the upper
-    body turns back.
+    body turns back; `gaze` (n, 3) is where the face points [world].
     """
     inclination = pendulum.inclination
     count = len(position)
     qpos = np.repeat(stance.qpos[None], count, axis=0)
     crouch = stance.height - np.hypot(pendulum.y, pendulum.h)
     _lean_upper_body(skeleton, qpos, world_from_body, inclination, angulation, steering, crouch, stance.pitch)
+    turn_head(skeleton, qpos, gaze)
     qpos[:, :3], edge = place_pelvis(skeleton, qpos, world_from_skis, position, com, inclination)
     ski_position, ski_rotation = ski_frames(skeleton, world_from_skis, position, edge)
     reach_error = _solve_legs(skeleton, qpos, ski_position, ski_rotation)
@@ -106,7 +110,7 @@ def _lean_upper_body(
     pelvis_lean = (1.0 + angulation) * inclination
     pelvis = frames @ rotation_about("x", -pelvis_lean) @ rotation_about("z", -PELVIS_TURN * steering)
     qpos[:, 3:7] = quaternion_from_matrix(pelvis @ rotation_about("y", pitch + CROUCH_PITCH["pelvis"] * crouch))
-    for hinge in ("abdomen_y", "chest_y", "head_y"):
+    for hinge in ("abdomen_y", "chest_y"):
         qpos[:, skeleton.qpos_of(hinge)] += CROUCH_PITCH[hinge] * crouch
     for hinge, share in SPINE_TURN.items():
         qpos[:, skeleton.qpos_of(hinge)] -= share * steering

@@ -391,6 +391,9 @@ class TechniqueSpec:
         "Tuck",
         "How low the skier makes himself against the air: 1 = trunk down, hands ahead, half the drag area",
     )
+    look_ahead: float = number(
+        1.5, 0.3, 5, "s", "Look ahead", "The head turns to where the skis will be in this time", advanced=True
+    )
     load_min: float = number(
         0.25,
         0,

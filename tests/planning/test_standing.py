@@ -34,7 +34,8 @@ def posed(length: float) -> tuple[np.ndarray, np.ndarray, PlannedPoses]:
     com = place + y[:, None] * skis[..., 1] + h[:, None] * skis[..., 2]
     pendulum = Pendulum(y, none, h, none, none, none)
     steering = 0.3 * np.cos(3.0 * LEAN)
-    return place, com, plan_poses(SKELETON, STANCE, skis, skis, place, com, pendulum, none - 0.3, steering)
+    gaze = skis[..., 0]
+    return place, com, plan_poses(SKELETON, STANCE, skis, skis, place, com, pendulum, none - 0.3, steering, gaze)
 
 
 @pytest.mark.parametrize("share", [0.85, 1.0])
