@@ -12,6 +12,12 @@ from typing import Any
 __version__ = "0.1.0"
 
 _PUBLIC = {
+    "load_run": "api",
+    "simulate": "api",
+    "summarise": "api",
+    "bake": "api",
+    "run_sweep": "api",
+    "run_crowd": "api",
     "RunSpec": "spec",
     "SpecError": "errors",
     "SkiAddonError": "errors",

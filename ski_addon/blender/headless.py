@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import atomic
-from ..errors import BlenderMissingError, OutputError
+from ..errors import BlenderMissingError, MissingInputError, OutputError, SpecError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,6 +49,40 @@ def bake_file(recording: Recording, spec: RunSpec, target: str | Path) -> Path:
 
     ride = recorded_ride(recording, build_skeleton(spec.skier))
     return write_file(ride, spec, target, lambda scene: bake_recording(recording, scene, options=spec.bake))
+
+
+def bake_into(recording: Recording, blend: Path, armature: str | None, target: Path) -> Path:
+    """Bake `recording` into the file `blend`, on the armature of that name or on a new skier, and save it as `target`.
+
+    The rest of the file is left as it is. The open file is closed, so this is for Blender without a window. Raises
+    `BlenderMissingError`, `MissingInputError` for a file Blender cannot read, `SpecError` for an armature that is not
+    there or cannot be used, or `OutputError`.
+    """
+    require_blender("baking")
+    check_target(target)
+    import bpy
+
+    from .armatures import bake_on_armature
+    from .bake import bake_recording, recorded_run
+
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(blend.resolve()), load_ui=False)
+    except RuntimeError as error:
+        raise MissingInputError(blend, str(error).strip().removeprefix("Error: ")) from error
+    scene, options = bpy.context.scene, recorded_run(recording).bake
+    if armature is None:
+        bake_recording(recording, scene, options=options)
+    else:
+        found = bpy.data.objects.get(armature)
+        if found is None or found.type != "ARMATURE":
+            names = ", ".join(sorted(thing.name for thing in bpy.data.objects if thing.type == "ARMATURE"))
+            hint = f"its armatures are: {names}" if names else "it has none: leave the name out for a new skier"
+            raise SpecError("armature", armature, hint=hint, problem=f"is no armature of {blend.name}")
+        bake_on_armature(recording, scene, found, bake=options)
+    with atomic.atomic_path(target) as temporary:
+        save_copy(temporary)
+    _LOG.info("wrote %s with Blender %s", target, bpy.app.version_string)
+    return target
 
 
 def write_file(ride: Ride, spec: RunSpec, target: str | Path, bake: Callable[[bpy.types.Scene], BakeResult]) -> Path:

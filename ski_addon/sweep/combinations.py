@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..errors import SpecError, one_line
@@ -35,7 +35,18 @@ def read_variations(spec: RunSpec, written: Sequence[str]) -> list[Combination]:
 
     See `read_written`. Raises `SpecError` for a wrong key or value.
     """
-    table = {key: list(dict.fromkeys(texts)) for key, (_, texts) in read_written(written, find_key, MOST).items()}
+    return combine(spec, {key: texts for key, (_, texts) in read_written(written, find_key, MOST).items()})
+
+
+def combine(spec: RunSpec, values: Mapping[str, Sequence[str]]) -> list[Combination]:
+    """Return every combination of the `values` of dotted keys, texts as after `--set`, the last key changing first.
+
+    Raises `SpecError` for a wrong key or value, and for more than `MOST` runs.
+    """
+    table = {key: list(dict.fromkeys(texts)) for key, texts in values.items()}
+    for key, texts in table.items():
+        if not texts:
+            raise SpecError(key, problem="has no values", hint="give one or more, or leave the key out")
     count = math.prod(len(texts) for texts in table.values())
     if count > MOST:
         raise SpecError("--vary", count, f"1..{MOST} runs", "vary fewer keys, or with fewer values")
