@@ -70,15 +70,17 @@ def bake(
     Raises `BlenderMissingError`, `MissingInputError`, `SpecError` for an armature that is not there or that no motion
     can be laid on, and `OutputError`.
     """
-    from .blender.headless import bake_file, bake_into
-    from .results import check_blender, recorded_spec
+    from . import results
 
-    check_blender("baking")
+    results.check_blender("baking")
+    made = Path(target or blend)
     if Path(blend).exists():
-        return bake_into(recording, Path(blend), armature, Path(target or blend))
-    if armature is not None:
+        results.bake_into(recording, Path(blend), armature, made)
+    elif armature is not None:
         raise MissingInputError(blend)
-    return bake_file(recording, recorded_spec(recording), target or blend)
+    else:
+        results.bake(recording, results.recorded_spec(recording), made)
+    return made
 
 
 def run_sweep(

@@ -6,7 +6,9 @@ Every member has a checksum, which reading verifies.
 from __future__ import annotations
 
 import json
+import math
 import struct
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -15,10 +17,15 @@ from typing import Any
 
 import numpy as np
 
+from .errors import one_line
+
 DAMAGE = (OSError, ValueError, EOFError, RuntimeError, MemoryError, OverflowError, struct.error, zlib.error)
 """What zipfile and numpy raise on damaged files."""
 LARGEST_BYTES = 16 * 2**30
 """An archive that unpacks to more than this is not read."""
+_CHUNK = 2**20
+_NO_ARRAY = (ValueError, TypeError, EOFError, SyntaxError, tokenize.TokenError, RecursionError, MemoryError)
+"""What numpy raises for the header of what is no array: it reads it as a Python literal."""
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
@@ -42,11 +49,10 @@ def read(path: str | Path, kind: str, version: int) -> tuple[dict[str, Any], dic
     """
     try:
         with zipfile.ZipFile(path) as members:
-            if sum(info.file_size for info in members.infolist()) > LARGEST_BYTES:
-                raise ArchiveError(f"it would unpack to more than {LARGEST_BYTES >> 30} GiB")
-        with np.load(path, allow_pickle=False) as members:
-            header = json.loads(members["header"].tobytes())
-            arrays = {name: members[name] for name in members.files if name != "header"}
+            check_size(members)
+            header = json.loads(read_member(members, "header").tobytes())
+            names = [name.removesuffix(".npy") for name in members.namelist()]
+            arrays = {name: read_member(members, name) for name in names if name != "header"}
     except ArchiveError:
         raise
     except (*DAMAGE, KeyError, zipfile.BadZipFile) as problem:
@@ -56,6 +62,55 @@ def read(path: str | Path, kind: str, version: int) -> tuple[dict[str, Any], dic
     if header.get("format_version") != version:
         raise ArchiveError(f"it has format version {header.get('format_version')}, this version reads {version}")
     return header, arrays
+
+
+def check_size(members: zipfile.ZipFile) -> None:
+    """Raise `ArchiveError` for an archive that unpacks to more than `LARGEST_BYTES`."""
+    if sum(info.file_size for info in members.infolist()) > LARGEST_BYTES:
+        raise ArchiveError(f"it would unpack to more than {LARGEST_BYTES >> 30} GiB")
+
+
+def read_member(members: zipfile.ZipFile, name: str) -> np.ndarray:
+    """Return the array `name` of an archive of numbers.
+
+    Nothing is allocated before the array's header agrees with the size of its member. Raises `KeyError` if there is
+    none of that name, `ArchiveError` for one that is no such array, and what `DAMAGE` lists.
+    """
+    info = members.getinfo(f"{name}.npy")
+    with members.open(info) as stream:
+        shape, by_columns, dtype = read_array_header(stream)
+        if dtype.hasobject or dtype.kind not in "iufb":
+            raise ArchiveError(f"{name} does not hold numbers")
+        array = np.empty(_checked_count(name, shape, dtype, info.file_size - stream.tell()), dtype)
+        place = array.view(np.uint8).data
+        filled = 0
+        while chunk := stream.read(_CHUNK):  # up to the end, where the checksum is verified
+            place[filled : filled + len(chunk)] = chunk
+            filled += len(chunk)
+    return array.reshape(shape, order="F" if by_columns else "C")
+
+
+def read_array_header(stream: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Return shape, whether columns come first, and type of the .npy array that `stream` begins with.
+
+    Raises `ArchiveError` if it is none.
+    """
+    try:
+        version = np.lib.format.read_magic(stream)
+        read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, by_columns, dtype = read_header(stream)
+    except _NO_ARRAY as problem:
+        raise ArchiveError(f"it is not a whole numpy array ({one_line(problem, 80)})") from None
+    if min(shape, default=0) < 0:
+        raise ArchiveError(f"it is not a whole numpy array (its shape is {shape})")
+    return shape, by_columns, dtype
+
+
+def _checked_count(name: str, shape: tuple[int, ...], dtype: np.dtype[Any], size: int) -> int:
+    count = math.prod(shape)
+    if count * dtype.itemsize != size:
+        raise ArchiveError(f"{name} says it has {count * dtype.itemsize} bytes, and has {size}")
+    return count
 
 
 def _write_member(members: zipfile.ZipFile, name: str, array: np.ndarray) -> None:

@@ -231,6 +231,14 @@ def bake(recording: Recording, spec: RunSpec, target: Path) -> None:
         bake_file(recording, spec, target)
 
 
+def bake_into(recording: Recording, blend: Path, armature: str | None, target: Path) -> None:
+    """Bake a recording into the file `blend` and save it as `target`; see `blender.headless.bake_into`."""
+    with apart.silenced():
+        from .blender import headless
+
+        headless.bake_into(recording, blend, armature, target)
+
+
 def render_strobe(recording: Recording, spec: RunSpec, target: Path, *, stop: bool = False) -> None:
     """Render one picture of the slope with the skier at several instants (`stop`: the last); raises `RenderError`."""
     with apart.silenced():

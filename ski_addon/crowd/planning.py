@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import archive
 from ..atomic import atomic_path
 from ..errors import Cancelled, MissingInputError, SkiAddonError
 from .crowd_spec import CrowdSpec
@@ -73,14 +74,15 @@ def _said(plan: MemberPlan) -> dict[str, Any]:
 def load_plans(folder: Path, crowd: CrowdSpec) -> dict[int, MemberPlan]:
     """Return the remembered plans that are still those of the crowd's members; a file that is damaged has none."""
     found: dict[int, MemberPlan] = {}
-    problems = (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile)
-    with contextlib.suppress(*problems), np.load(folder / PLANS, allow_pickle=False) as members:
-        head = json.loads(members["head"].tobytes())
+    problems = (*archive.DAMAGE, KeyError, TypeError, zipfile.BadZipFile)
+    with contextlib.suppress(*problems), zipfile.ZipFile(folder / PLANS) as members:
+        head = json.loads(archive.read_member(members, "head").tobytes())
         for index in range(crowd.crowd.count):
             key = member_key(crowd, index)
             if key in head:
                 said = head[key]
-                way = Way(members[key], float(said["duration"])) if said["duration"] is not None else None
+                planned = said["duration"] is not None
+                way = Way(archive.read_member(members, key), float(said["duration"])) if planned else None
                 found[index] = MemberPlan(draw_member(crowd, index, int(said["attempt"])), way, said["problem"])
     return found
 

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from .. import archive
 from ..errors import Cancelled, RecordingError
 from .members import Member
 from .tracks import Way, way_of
@@ -92,25 +91,21 @@ def kept_outcome(member: Member, folder: Path) -> Outcome | None:
 
     All bytes are checked, but only the places are kept.
     """
-    from ..archive import DAMAGE
-
     path = folder / recording_name(member.index)
     try:
         return _read_kept(member, path)
-    except (*DAMAGE, KeyError, TypeError, zipfile.BadZipFile):
+    except (*archive.DAMAGE, KeyError, TypeError, zipfile.BadZipFile):
         return None
 
 
 def check_whole(path: Path) -> None:
     """Raise `RecordingError` unless the file of a recording is there and all its bytes are as they were written."""
-    from ..archive import DAMAGE
-
     try:
-        with zipfile.ZipFile(path) as archive:
-            damaged = archive.testzip()
+        with zipfile.ZipFile(path) as members:
+            damaged = members.testzip()
     except FileNotFoundError:
         raise RecordingError(path, "there is no such file; simulate the crowd again") from None
-    except (*DAMAGE, zipfile.BadZipFile) as problem:
+    except (*archive.DAMAGE, zipfile.BadZipFile) as problem:
         raise RecordingError(path, f"it is damaged ({problem}); simulate the crowd again") from None
     if damaged:
         raise RecordingError(path, f"{Path(damaged).stem} in it is damaged; simulate the crowd again")
@@ -120,16 +115,16 @@ def _read_kept(member: Member, path: Path) -> Outcome | None:
     from ..simulation.recording import array_names
     from ..simulation.versions import library_versions
 
-    with np.load(path, allow_pickle=False) as members:
-        header = json.loads(members["header"].tobytes())
+    with zipfile.ZipFile(path) as members:
+        header = json.loads(archive.read_member(members, "header").tobytes())
         if header["spec_hash"] != member.spec.content_hash() or header["versions"] != library_versions():
             return None
-        moments, place = members["time"], members["com"]
-        whole = set(members.files) >= set(array_names())
+        moments, place = archive.read_member(members, "time"), archive.read_member(members, "com")
+        whole = set(members.namelist()) >= {f"{name}.npy" for name in array_names()}
     if not len(moments) or not whole or header["status"] == "cancelled":
         return None
-    with zipfile.ZipFile(path) as archive:
-        if archive.testzip():
+    with zipfile.ZipFile(path) as members:
+        if members.testzip():
             return None
     return Outcome(
         index=member.index,

@@ -5,7 +5,6 @@ Nothing in the file is pickled and its bytes depend only on its contents: the ar
 
 from __future__ import annotations
 
-import io
 import json
 import zipfile
 from dataclasses import dataclass, fields
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .. import archive
-from ..archive import DAMAGE, LARGEST_BYTES
+from ..archive import DAMAGE
 from ..atomic import atomic_path
 from ..errors import RecordingError
 
@@ -165,12 +164,10 @@ class Recording:
         if not source.is_file():
             raise RecordingError(source, "there is no such file")
         try:
-            with zipfile.ZipFile(source) as packed:
-                if sum(info.file_size for info in packed.infolist()) > LARGEST_BYTES:
-                    raise RecordingError(source, f"it would unpack to more than {LARGEST_BYTES >> 30} GiB")
-            with np.load(source, allow_pickle=False) as members:
+            with zipfile.ZipFile(source) as members:
+                archive.check_size(members)
                 header = _read_header(source, members)
-                arrays = {name: members[name] for name in array_names()}
+                arrays = {name: archive.read_member(members, name) for name in array_names()}
         except KeyError as missing:
             raise RecordingError(source, f"it lacks {missing}; simulate again") from None
         except (*DAMAGE, zipfile.BadZipFile) as problem:
@@ -184,8 +181,8 @@ def array_names() -> list[str]:
     return [entry.name for entry in fields(Recording) if entry.name != "header"]
 
 
-def _read_header(source: Path, members: Any) -> dict[str, Any]:
-    document = json.loads(io.BytesIO(members["header"].tobytes()).read())
+def _read_header(source: Path, members: zipfile.ZipFile) -> dict[str, Any]:
+    document = json.loads(archive.read_member(members, "header").tobytes())
     if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
         raise RecordingError(source, "it is not a recording of a ski run")
     version = document.pop("format_version", None)

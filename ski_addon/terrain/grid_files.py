@@ -11,6 +11,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from .. import archive
 from ..errors import MissingInputError, MissingLibraryError, TerrainError
 from . import png, text_grids
 from .grid_checks import check_shape
@@ -58,42 +59,42 @@ def _read_npy(stream: BinaryIO, name: str) -> GridData:
 
 def _read_array(stream: Any, name: str) -> np.ndarray:
     """Read one .npy array, its size first."""
+    hint = "save it with numpy.save"
     try:
-        version = np.lib.format.read_magic(stream)
-        header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        shape, by_columns, dtype = header(stream)
+        shape, by_columns, dtype = archive.read_array_header(stream)
         if dtype.hasobject or dtype.kind not in "iufb":
             raise TerrainError(name, f"its heights are of type {dtype}, not numbers", "give heights in metres")
         check_shape(shape, name)
         raw = stream.read(shape[0] * shape[1] * dtype.itemsize)
         return np.frombuffer(raw, dtype).reshape(shape, order="F" if by_columns else "C")
-    except (ValueError, EOFError, SyntaxError, zlib.error, zipfile.BadZipFile) as error:
-        raise TerrainError(name, f"it is not a whole numpy array ({error})", "save it with numpy.save") from None
+    except archive.ArchiveError as error:
+        raise TerrainError(name, str(error), hint) from None
+    except (ValueError, EOFError, zlib.error, zipfile.BadZipFile) as error:
+        raise TerrainError(name, f"it is not a whole numpy array ({error})", hint) from None
 
 
 def _read_npz(stream: BinaryIO, name: str) -> GridData:
     try:
-        with zipfile.ZipFile(stream) as archive:
-            names = [entry.removesuffix(".npy") for entry in archive.namelist()]
+        with zipfile.ZipFile(stream) as members:
+            names = [entry.removesuffix(".npy") for entry in members.namelist()]
             if "height" not in names:
                 problem = f"it has no array height (it has {', '.join(names) or 'none'})"
                 raise TerrainError(name, problem, "save it with numpy.savez(..., height=..., spacing=...)")
-            with archive.open("height.npy") as part:
+            with members.open("height.npy") as part:
                 heights = _read_array(part, name)
-            spacing, origin = (_pair(archive, names, key, name) for key in ("spacing", "origin"))
+            spacing, origin = (_pair(members, names, key, name) for key in ("spacing", "origin"))
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError) as error:
         raise TerrainError(name, f"it is not a numpy archive ({error})", "save it with numpy.savez") from None
     return GridData(heights, spacing, origin)
 
 
-def _pair(archive: zipfile.ZipFile, names: list[str], key: str, name: str) -> Pair | None:
+def _pair(members: zipfile.ZipFile, names: list[str], key: str, name: str) -> Pair | None:
     """Return the one or two numbers of an array, or None if the archive does not have it."""
     if key not in names:
         return None
     try:
-        with archive.open(f"{key}.npy") as part:
-            values = np.lib.format.read_array(part, allow_pickle=False).astype(float).ravel()
-    except (ValueError, EOFError) as error:
+        values = archive.read_member(members, key).astype(float).ravel()
+    except (archive.ArchiveError, ValueError, EOFError) as error:
         raise TerrainError(name, f"its {key} is not an array of numbers ({error})", "give one or two numbers") from None
     if values.size not in (1, 2):
         raise TerrainError(name, f"its {key} has {values.size} numbers", "give one or two, in metres")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import tokenize
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from .. import archive
 from ..atomic import atomic_path
 from ..errors import MissingInputError, OutputError, SpecError
 from .grid import HeightGrid
@@ -107,9 +109,9 @@ def write_ground(ground: MeshGround, path: str | Path) -> Path:
     target = Path(path)
     if target.suffix.lower() != ".npz":
         raise OutputError(target, "a ground's file ends in .npz")
-    archive = io.BytesIO()  # an archive that fails on a full disk would fail a second time when it is thrown away
+    packed = io.BytesIO()  # an archive that fails on a full disk would fail a second time when it is thrown away
     np.savez(
-        archive,
+        packed,
         height=ground.heights,
         spacing=np.array(ground.spacing),
         origin=np.array(ground.origin),
@@ -119,8 +121,12 @@ def write_ground(ground: MeshGround, path: str | Path) -> Path:
         name=np.array(ground.name),
     )
     with atomic_path(target) as temporary:
-        temporary.write_bytes(archive.getbuffer())
+        temporary.write_bytes(packed.getbuffer())
     return target
+
+
+_DAMAGE = (*archive.DAMAGE, KeyError, AttributeError, TypeError, SyntaxError, tokenize.TokenError, zipfile.BadZipFile)
+"""What numpy and this module raise for a file that is damaged, or something else."""
 
 
 def read_ground(path: str | Path) -> MeshGround:
@@ -133,5 +139,5 @@ def read_ground(path: str | Path) -> MeshGround:
             return MeshGround(file["height"], float(file["spacing"]), (x, y), *known, str(file["name"]))
     except FileNotFoundError:
         raise MissingInputError(source) from None
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except _DAMAGE as error:
         raise MissingInputError(source, f"it is not a ground sampled from a mesh ({error})") from None

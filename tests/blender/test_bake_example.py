@@ -34,7 +34,7 @@ def open_again(path):
 
 def test_a_skier_joins_a_file_of_the_user_s(shot, tmp_path):
     before = shot.read_bytes()
-    run_example("bake_into_file.py", shot, tmp_path / "skied.blend")
+    assert run_example("bake_into_file.py", shot, tmp_path / "skied.blend") == []
     assert shot.read_bytes() == before
     objects = open_again(tmp_path / "skied.blend")
     assert {"Cube", "Camera", "Light", "Hero", "Skier"} <= set(objects.keys())

@@ -14,7 +14,6 @@ import pytest
 from ski_addon import archive
 from ski_addon.errors import OutputError, RecordingError
 from ski_addon.simulation import Recording
-from ski_addon.simulation import recording as recording_module
 from ski_addon.simulation.recorder import COUNTS, SHAPES, Recorder
 from ski_addon.simulation.recording import array_names
 from ski_addon.spec import RunSpec
@@ -217,7 +216,7 @@ def test_header_that_is_not_json(saved):
 
 
 def test_file_that_would_fill_the_memory_is_not_opened(saved, monkeypatch):
-    monkeypatch.setattr(recording_module, "LARGEST_BYTES", 10_000)
+    monkeypatch.setattr(archive, "LARGEST_BYTES", 10_000)
     assert "unpack" in refusal(saved)
 
 
