@@ -1,7 +1,7 @@
 # What a user or developer runs. Needs only git, make and a Python 3.11 or 3.13; everything else goes into .venv.
 #   make env     the environment .venv          make build      the extension's zips, in dist/
 #   make test    every test without a display   make build-dev  a zip for this computer only, any Python: PYTHON_TAG=cp314
-#   make demo    out/demo/: skier.blend, ...    make lint types acceptance benchmark clean
+#   make demo    out/demo/: skier.blend, ...    make lint types acceptance benchmark fuzz clean
 SHELL := /bin/bash
 PY := .venv/bin/python
 PYTHON_TAG ?= cp314
@@ -15,7 +15,7 @@ CORE_TESTS := tests --ignore=tests/blender --ignore=tests/gui
 # One process a core; the tests of a file stay together, for they share what their fixtures have made.
 SIDE_BY_SIDE := -n auto --dist loadfile
 
-.PHONY: env test test-core test-blender acceptance benchmark demo build build-dev lint format types clean
+.PHONY: env test test-core test-blender acceptance benchmark fuzz demo build build-dev lint format types clean
 .DEFAULT_GOAL := env
 
 env: .venv/.complete
@@ -48,6 +48,10 @@ acceptance: env
 # How long everything takes: docs/performance.md. With other arguments: make benchmark ARGUMENTS="--only step --quick"
 benchmark: env
 	$(PY) -m benchmarks $(ARGUMENTS)
+
+# Ten thousand random runs and damaged files; with other arguments: make fuzz ARGUMENTS="--runs 500 --seed 7"
+fuzz: env
+	$(PY) -m tests.fuzz $(ARGUMENTS)
 
 demo: env
 	$(PY) -m ski_addon demo -o out/demo

@@ -89,7 +89,7 @@ def run_sweep(
     """Simulate a run for every combination of the `values` of dotted keys; return a row for each.
 
     A row has the `values` of the keys as texts, `status` ("impossible" for a run that cannot be skied, with why in
-    `error`) and numbers of its summary. Every run has a folder of its own within `folder`; those that are finished are
+    `detail`) and numbers of its summary. Every run has a folder of its own within `folder`; those that are finished are
     kept, so the same call goes on where it was stopped. `jobs` processes share the work: with more than one, call it
     below `if __name__ == "__main__"`. Raises `SpecError` for a wrong key or value, and `OutputError`.
     """

@@ -23,7 +23,7 @@ def main(folder: str, jobs: int = 2) -> None:
         if row["status"] == "finished":
             print(f"{radius:4.0f} m  {row['speed_max']:4.1f} m/s  {row['inclination_max_deg']:3.0f} deg")
         else:
-            print(f"{radius:4.0f} m  {row['status']}: {row['error']}")
+            print(f"{radius:4.0f} m  {row['status']}: {row['detail']}")
 
 
 if __name__ == "__main__":  # processes that share the work import this file

@@ -67,3 +67,28 @@ def test_run_of_a_sweep_is_the_run_itself(swept, tmp_path):
 def test_without_values_one_line(tmp_path, capsys):
     assert cli.main(["sweep", "paper_main", "-o", str(tmp_path / "out")]) == 2
     assert "--vary" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def edited(path):
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(bytes(data))
+
+
+@pytest.mark.parametrize("spoil", [lambda path: path.unlink(), cut, edited], ids=["deleted", "cut off", "edited"])
+@pytest.mark.parametrize("name", ["recording.npz", "summary.json", "spec.toml", "recording.task.json", "../sweep.json"])
+def test_file_that_was_touched_is_made_again(tmp_path, capsys, name, spoil):
+    values = ("--vary", "skier.mass=60,70", "--jobs", "1")
+    assert sweep(tmp_path, *values) == 0
+    recording = tmp_path / "mass=60" / "recording.npz"
+    other = (tmp_path / "mass=70" / "recording.npz").stat().st_mtime_ns
+    whole = recording.read_bytes()
+    spoil(tmp_path / "mass=60" / name)
+    assert sweep(tmp_path, *values) == 0
+    assert recording.read_bytes() == whole and (tmp_path / "mass=70" / "recording.npz").stat().st_mtime_ns == other
+    assert json.loads((tmp_path / "sweep.json").read_text())["statuses"] == {"finished": 2}
+    assert capsys.readouterr().err == ""
