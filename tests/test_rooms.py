@@ -106,3 +106,25 @@ def test_the_root_package_imports_nothing() -> None:
     code += "print(*sorted(name for name in set(sys.modules) - before if name.startswith(('bpy', 'ski', 'numpy'))))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.split() == []
+
+
+RUNS_CODE = {"eval", "exec", "compile", "__import__"}
+"""Calls that run what a text says."""
+
+
+def test_nothing_that_is_read_from_a_file_can_run() -> None:
+    """No pickles, no eval, no exec: whatever a document, a recording or a cache holds, it is data."""
+    assert offenders([*core_files(), "__init__.py"], {"pickle", "shelve", "marshal", "dill", "joblib"}) == []
+    for path in core_files():
+        for node in ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                assert node.func.id not in RUNS_CODE, f"{path} line {node.lineno} calls {node.func.id}"
+            if isinstance(node, ast.keyword) and node.arg == "allow_pickle":
+                assert isinstance(node.value, ast.Constant) and node.value.value is False, path
+            if isinstance(node, ast.Attribute) and node.attr == "load" and ast.unparse(node.value) in ("np", "numpy"):
+                assert "allow_pickle=False" in (ROOT / path).read_text(encoding="utf-8"), path
+
+
+def core_files() -> list[str]:
+    """Every file that is shipped."""
+    return [path for path in python_files() if path.startswith(("ski_addon/", "operators/"))]
