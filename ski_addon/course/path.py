@@ -65,7 +65,11 @@ def _smooth(spec: RunSpec, points: np.ndarray, number: np.ndarray) -> np.ndarray
         path = smoothed_to(path, limit)
         _check_tight(path, points, number, limit, f"what {asked_speed(spec):g} m/s allow", "ski slower")
         return path
-    result = smoothed(path, asked)
+    try:
+        result = smoothed(path, asked)
+    except np.linalg.LinAlgError:
+        hint = "use less, or auto"
+        raise SpecError("course.path_smoothing", asked, hint=hint, problem="is too much for this path") from None
     hint = "use more course.path_smoothing, or auto"
     _check_tight(result, points, number, 1.0 / RADIUS_MIN, f"{RADIUS_MIN:g} m", hint)
     return result

@@ -37,7 +37,8 @@ def smoothed(path: np.ndarray, length: np.ndarray | float) -> np.ndarray:
     """Return `path` (n, 2), at even steps, without its bends shorter than `length` (n,) [m].
 
     It minimises the squared distance from the path plus length^6 times the squared third derivative: a filter that
-    leaves parabolas, and so gentle turns, as they are. Both ends stay in their places.
+    leaves parabolas, and so gentle turns, as they are. Both ends stay in their places. Raises `LinAlgError` for a
+    length so many steps long that numbers have too few digits for it.
     """
     from scipy.linalg import solveh_banded
 
@@ -79,5 +80,8 @@ def smoothed_to(path: np.ndarray, most: float) -> np.ndarray:
         grown = np.where(reach > 0.0, np.maximum(length, _GROWTH * reach), length)
         length = np.exp(gaussian_filter1d(np.log(grown), length[tight].mean() / GRID, mode="nearest"))
         length = np.maximum(length, np.where(tight, grown, LEAST))
-        result = smoothed(path, length)
+        try:
+            result = smoothed(path, length)
+        except np.linalg.LinAlgError:  # so long a window on so long a path is beyond the digits of numbers
+            break
     return result

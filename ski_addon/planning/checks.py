@@ -74,7 +74,7 @@ def check_lean(spec: RunSpec, line: Line, pendulum: Pendulum, height: float) -> 
         f"technique.inclination_max_deg = {spec.technique.inclination_max_deg:g} (use a larger radius, a gentler slope "
         "or a lower start speed)"
     )
-    raise PlanInfeasible(_place(line, worst), works, reason)
+    raise PlanInfeasible(_place(line, worst), works if np.isfinite(works) else None, reason)
 
 
 def check_load(spec: RunSpec, line: Line, pendulum: Pendulum) -> None:

@@ -15,6 +15,7 @@ from ..course import CourseRide, Track, build_track, ride_course
 from ..errors import SkiAddonError
 from ..gravity import GRAVITY, STANDARD_GRAVITY
 from ..planning import as_planned
+from ..planning.checks import check_arrival
 from ..planning.line import body_normals
 from ..planning.ride import Body, plan_ride
 from ..planning.speed_and_lean import speed_control
@@ -116,11 +117,16 @@ def preview_track(spec: RunSpec, track: Track, terrain: Terrain, riding: Riding 
 
 
 def ride_track(spec: RunSpec, track: Track, step: float = RIDE_STEP) -> Riding:
-    """Return how fast `track` is ridden, integrated in steps of `step` [s]."""
+    """Return how fast `track` is ridden, integrated in steps of `step` [s].
+
+    Raises `PlanInfeasible` where friction holds the skier at the start.
+    """
     snow = Snow.of(spec.snow, spec.skier, spec.technique.tuck)
     weight = -(track.surface_normal @ GRAVITY)
     body = Body(weight, np.zeros_like(weight), track.arc_length)
     ride = plan_ride(track, snow, body, speed_control(spec, track), step)
+    if ride.time[-1] < TIME_STEP:  # nothing moves at all; one who is stopped later is shown up to there
+        check_arrival(track, ride)
     time = _evenly(float(ride.time[-1]))
     return time, np.interp(time, ride.time, ride.arc_length), np.interp(time, ride.time, ride.speed)
 
