@@ -51,12 +51,10 @@ def read_crowd(path: str | Path, parts: Sequence[Path] = (), changes: Mapping[st
         spec = finished(RunSpec.from_toml(path))
         return CrowdSpec((MemberRun(spec),), spec.name, spec.description).with_values(own)
     with source.errors_named():
-        made = _read(source, path.parent)
-        made = CrowdSpec(
-            tuple(MemberRun(finished(run.spec), run.repeat, run.offset) for run in made.runs),
-            *(made.name, made.description, made.crowd, made.spread),
-        )
-        return made.validate().with_values(own)
+        made = _read(source, path.parent).validate()
+    # what follows is not the document's fault
+    skied = tuple(MemberRun(finished(run.spec), run.repeat, run.offset) for run in made.runs)
+    return CrowdSpec(skied, made.name, made.description, made.crowd, made.spread).validate().with_values(own)
 
 
 def write_crowd(crowd: CrowdSpec, folder: Path, name: str = DOCUMENT) -> Path:

@@ -123,3 +123,10 @@ def test_a_document_with_comments_is_left_as_it_is(tmp_path):
 def test_a_changed_key_is_checked():
     with pytest.raises(SkiAddonError, match=r"crowd\.seed = -1 is outside"):
         crowd_of(changes={"crowd.seed": "-1"})
+
+
+def test_a_wrong_option_is_not_blamed_on_the_document():
+    with pytest.raises(SpecError, match=r"^crowd\.count = 0 is outside"):
+        read_crowd(find_crowd("pursuit_race"), (), {"crowd.count": 0})
+    with pytest.raises(SpecError, match=r"^course\.turn_radius = 1 is outside"):
+        read_crowd(find_crowd("pursuit_race"), (), {"course.turn_radius": 1})
