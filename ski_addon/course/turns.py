@@ -186,7 +186,7 @@ def _stages(
         stages += (v, v2, v3, v4, psi, psi2, psi3, psi4)
         after = v + sixth * (a + 2.0 * b + 2.0 * c + d)
         psi += sixth * (begin * v + 2.0 * (middle * v2) + 2.0 * (middle * v3) + end * v4)
-        stuck = after < min(SLOWEST, v)
+        stuck = after < min(SLOWEST, v) or after <= 0.0
         v = after
         if stuck:
             break

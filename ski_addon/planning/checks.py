@@ -67,7 +67,7 @@ def check_lean(spec: RunSpec, line: Line, pendulum: Pendulum, height: float) -> 
     allowed = speed_for_lean(
         most * np.sign(pendulum.y[worst]), line.curvature, line.gravity_left, line.gravity_into, height
     )
-    works = line.speed[worst] * float(np.min((allowed / line.speed)[same_turn]))
+    works = line.speed[worst] * float(np.min((allowed / np.maximum(line.speed, 1e-6))[same_turn]))
     needed = np.ceil(10 * np.rad2deg(lean[worst])) / 10
     reason = (
         f"at {line.speed[worst]:.1f} m/s it needs {needed:.1f} degrees of lean, more than "
