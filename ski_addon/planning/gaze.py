@@ -10,7 +10,7 @@ import numpy as np
 
 from ..body import Skeleton
 from ..body.kinematics import body_frames
-from ..frames import matrix_from_columns, normalized
+from ..frames import components, matrix_from_columns, normalized
 from .line import Line
 
 EYES_OVER_SNOW = 0.5
@@ -45,10 +45,11 @@ def turn_head(skeleton: Skeleton, qpos: np.ndarray, gaze: np.ndarray) -> None:
     left = normalized(np.cross([0.0, 0.0, 1.0], gaze))
     wanted = np.swapaxes(trunk, -1, -2) @ matrix_from_columns(gaze, left, np.cross(gaze, left))
     # the neck's hinges are, from the chest outwards, about y, x and z: wanted = Ry(a) Rx(b) Rz(c)
+    _, _, xz, yx, yy, yz, _, _, zz = components(wanted.reshape(-1, 9))
     angles = {
-        "head_y": np.arctan2(wanted[:, 0, 2], wanted[:, 2, 2]),
-        "head_x": np.arcsin(np.clip(-wanted[:, 1, 2], -1.0, 1.0)),
-        "head_z": np.arctan2(wanted[:, 1, 0], wanted[:, 1, 1]),
+        "head_y": np.arctan2(xz, zz),
+        "head_x": np.arcsin(np.clip(-yz, -1.0, 1.0)),
+        "head_z": np.arctan2(yx, yy),
     }
     for hinge, angle in angles.items():
         most = COMFORTABLE[hinge]

@@ -9,9 +9,10 @@ from scipy.interpolate import CubicSpline
 from ski_addon.body import centre_of_mass, forward_kinematics
 from ski_addon.body.model import GRAVITY
 from ski_addon.course import TRANSITION
+from ski_addon.pipeline import make_plan
 from ski_addon.planning import MotionPlan, build_stance
 from ski_addon.snow import Snow
-from tests.ski_runs import FRICTIONLESS, MAIN, mirrored_qpos, planned
+from tests.ski_runs import FRICTIONLESS, MAIN, mirrored_qpos, planned, preset
 
 FAST = {"course.turn_count": 3, "course.start_speed": 9, "course.transition_duration": 0.4}
 """With 10 m turns: edges change in 0.4 s at 35 degrees of lean."""
@@ -291,3 +292,15 @@ def test_run_that_stops_keeps_to_its_speed_on_the_straight_way_to_the_stop():
     there = run.plan.arc_length > run.track.stop_from
     assert speed[there].max() > 0.9 * run.spec.course.target_speed
     assert speed.max() <= 1.1 * run.spec.course.target_speed
+
+
+def test_a_plan_has_the_same_bytes_wherever_its_arrays_lie_in_memory():
+    """numpy has two routines for sines, which differ in the last bit: see `frames.components`."""
+    spec = preset("paper_main", {"course.turn_count": 2, "skier.height": 1.63})
+    rng, seen = np.random.default_rng(2), set()
+    for _ in range(25):
+        junk = [np.empty(size, dtype=np.uint8) for size in rng.integers(1, 60_000, rng.integers(40))]
+        plan = make_plan(spec).plan
+        seen.add(b"".join(np.ascontiguousarray(column).tobytes() for column in vars(plan).values()))
+        del junk
+    assert len(seen) == 1
